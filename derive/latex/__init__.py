@@ -1,0 +1,1 @@
+"""Printers from the presentation tree: LaTeX and MathML."""

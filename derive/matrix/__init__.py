@@ -1,0 +1,1 @@
+"""Noncommutative algebra: normal form, proof search with cofactors, exact refutation."""

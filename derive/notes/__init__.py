@@ -1,0 +1,1 @@
+"""Lecture notes: one document model and its writers."""

@@ -1,0 +1,1 @@
+"""Numbers: plants, Riccati equations, the spectrum integral, gain optimisation."""

@@ -1,0 +1,1 @@
+"""Lectures: each displayed equation derived, with its certificate."""

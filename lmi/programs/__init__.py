@@ -1,0 +1,1 @@
+"""One convex program a file."""
