@@ -1,0 +1,235 @@
+"""Rules beside the identities: positivity, comparison, and the operators d/dt, E[.], the integral over [t0, t].
+
+Each rule ends in identities that the kernel replays, or rewrites a polynomial by a declared table (derivatives,
+moments). Like the kernel it searches nothing, and uses the standard library only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from derive.kernel import Alphabet, Certificate, Key, Poly, Rejected, Scalars, Term, identity, parts, replay, times
+
+Grid = tuple[tuple[Poly, ...], ...]
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A hypothesis or proved lemma on a (block) matrix: 'psd', 'pd', 'hurwitz', 'schur', or 'initial' (psd at t0)."""
+
+    kind: str
+    matrix: Grid
+
+
+@dataclass(frozen=True)
+class Square:
+    """The addend c * scalars * F H F', with c >= 0, scalars >= 0 and H the matrix of a psd or pd fact."""
+
+    coefficient: Fraction
+    scalars: Scalars
+    factor: Grid
+    fact: str
+
+
+@dataclass(frozen=True)
+class Positivity:
+    """G >= 0 because G = sum of squares; G > 0 if in addition squares[strict] has a pd core and F Z = I."""
+
+    claim: Grid
+    squares: tuple[Square, ...]
+    terms: tuple[tuple[tuple[Term, ...], ...], ...]
+    strict: int | None = None
+    inverse: Poly | None = None
+    inverse_terms: tuple[Term, ...] = ()
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """D >= 0 because M D + D M' + F = 0 with M Hurwitz ('lyapunov'), M D M' - D + F = 0 with M Schur ('stein'),
+    or dD/dt = M D + D M' + F with D(t0) >= 0 ('transient'); F >= 0 is a fact, ``stable`` names the fact on M or D(t0).
+    """
+
+    kind: str
+    claim: Poly
+    matrix: Poly
+    stable: str
+    forcing: str
+    terms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
+class Context:
+    """What may be used.
+
+    Letters, relations (each = 0), facts, scalars >= 0, time derivatives, letters constant in time, parameters (letters
+    that no choice of a gain changes), moments E[a b'], random letters (all of mean zero).
+    """
+
+    alphabet: Alphabet
+    relations: Mapping[str, Poly] = field(default_factory=dict[str, Poly])
+    facts: Mapping[str, Fact] = field(default_factory=dict[str, Fact])
+    nonnegative: frozenset[str] = frozenset()
+    derivatives: Mapping[str, Poly] = field(default_factory=dict[str, Poly])
+    constants: frozenset[str] = frozenset()
+    parameters: frozenset[str] = frozenset()
+    moments: Mapping[tuple[str, str], Poly] = field(default_factory=dict[tuple[str, str], Poly])
+    random: frozenset[str] = frozenset()
+
+    def fact(self, name: str, *kinds: str) -> Fact:
+        """Return a fact of one of the given kinds, or raise Rejected."""
+        if name not in self.facts or self.facts[name].kind not in kinds:
+            raise Rejected(f"no fact {name} of kind {' or '.join(kinds)}")
+        return self.facts[name]
+
+
+def replay_positivity(proof: Positivity, claim: Grid, context: Context) -> str:
+    """Accept G >= 0 ('psd') or G > 0 ('pd'), or raise Rejected."""
+    if proof.claim != claim:
+        raise Rejected("the certificate belongs to another claim")
+    flip, rest = context.alphabet.transpose, {(i, j): g for i, row in enumerate(claim) for j, g in enumerate(row)}
+    for s in proof.squares:
+        if s.coefficient < 0 or not context.nonnegative.issuperset(s.scalars):
+            raise Rejected(f"the coefficient of {s.fact} may be negative")
+        core = context.fact(s.fact, "psd", "pd").matrix
+        for i, j in rest:
+            for k, row in enumerate(core):
+                for m, h in enumerate(row):
+                    rest[i, j] -= (s.factor[i][k] * h * flip(s.factor[j][m])).scale(s.coefficient, s.scalars)
+    for (i, j), g in rest.items():
+        replay(Certificate(g, proof.terms[i][j]), g, context.relations, context.alphabet)
+    if proof.strict is None:
+        return "psd"
+    square = proof.squares[proof.strict]
+    if len(claim) != 1 or len(square.factor[0]) != 1 or proof.inverse is None:
+        raise Rejected("strictness needs one block and a right inverse of the factor")
+    if square.coefficient <= 0 or square.scalars:
+        raise Rejected("a coefficient that may vanish does not make a square strict")
+    context.fact(square.fact, "pd")
+    injective = square.factor[0][0] * proof.inverse - identity(claim[0][0].rows)
+    replay(Certificate(injective, proof.inverse_terms), injective, context.relations, context.alphabet)
+    return "pd"
+
+
+def replay_comparison(proof: Comparison, claim: Poly, context: Context) -> str:
+    """Accept D >= 0 by comparison, or raise Rejected."""
+    flip, d, m = context.alphabet.transpose, proof.claim, proof.matrix
+    if d != claim:
+        raise Rejected("the certificate belongs to another claim")
+    wanted = {"lyapunov": ("hurwitz", m), "stein": ("schur", m), "transient": ("initial", d)}
+    if proof.kind not in wanted or context.fact(proof.stable, wanted[proof.kind][0]).matrix != (
+        (wanted[proof.kind][1],),
+    ):
+        raise Rejected(f"the fact {proof.stable} is not about this matrix")
+    (f,) = context.fact(proof.forcing, "psd", "pd").matrix[0]
+    equation = m * d * flip(m) - d + f if proof.kind == "stein" else m * d + d * flip(m) + f
+    if proof.kind == "transient":
+        equation = equation - differentiate(d, context)
+    replay(Certificate(equation, proof.terms), equation, context.relations, context.alphabet)
+    return "psd"
+
+
+# ------------------------------------------------------------------------------------------------ operators
+def substitute(poly: Poly, images: Mapping[str, Poly], alphabet: Alphabet) -> Poly:
+    """Replace letters by polynomials of the same type (transposes follow)."""
+    total = Poly({}, poly.rows, poly.cols)
+    for (m, w), c in poly.terms.items():
+        product = Poly({(m, ()): c}, poly.rows, poly.rows)
+        for a in w:
+            rows, cols = alphabet.shape(a)
+            image = images.get(a) or Poly({((), (a,)): 1}, rows, cols)
+            if a not in images and alphabet.flip(a) in images:
+                image = alphabet.transpose(images[alphabet.flip(a)])
+            if (image.rows, image.cols) != (rows, cols):
+                raise Rejected(f"the image of {a} is {image.rows} x {image.cols}, expected {rows} x {cols}")
+            product = product * image
+        total = total + product
+    return total
+
+
+def at_time(poly: Poly, variable: str, value: str) -> Poly:
+    """Set a time variable: f(..., variable, ...) becomes f(..., value, ...) in letters and deltas."""
+
+    def move(name: str) -> str:
+        head, sign, tail = name[:-1].partition("(") if name.startswith("δ") else name.partition("@")
+        return head + sign + ",".join(value if a == variable else a for a in tail.split(",")) + ")" * (sign == "(")
+
+    terms: dict[Key, Fraction] = {}
+    for (m, w), c in poly.terms.items():
+        key = tuple(sorted(map(move, m))), tuple(map(move, w))
+        terms[key] = terms.get(key, Fraction(0)) + c
+    return Poly(terms, poly.rows, poly.cols)
+
+
+def differentiate(poly: Poly, context: Context) -> Poly:
+    """Return d/dt by the product rule and Leibniz's rule (integrals run from t0 to t)."""
+    total, alphabet = Poly({}, poly.rows, poly.cols), context.alphabet
+    for (m, w), c in poly.terms.items():
+        for bound in [s[1:] for s in m if s.startswith("∫")]:
+            inner = tuple(s for s in m if s != "∫" + bound)
+            total = total + at_time(Poly({(inner, w): c}, poly.rows, poly.cols), bound, "t")
+        if any(s.startswith("δ") for s in m):
+            raise Rejected("a Dirac delta is not differentiated")
+        for i, a in enumerate(w):
+            name, _, arguments = parts(a)
+            rate = context.derivatives.get(a)
+            if rate is None and alphabet.flip(a) in context.derivatives:
+                rate = alphabet.transpose(context.derivatives[alphabet.flip(a)])
+            if rate is None and ("t" in arguments or not (arguments or name in context.constants)):
+                raise Rejected(f"the time derivative of {a} is not declared")
+            for (n, v), d in rate.terms.items() if rate else ():
+                total = total + Poly({(times(m, n), w[:i] + v + w[i + 1 :]): c * d}, poly.rows, poly.cols)
+    return total
+
+
+def expect(poly: Poly, context: Context) -> Poly:
+    """Return E[.]: linear, deterministic factors leave, E[a b'] from the moments; every random letter has mean zero."""
+    total = Poly({}, poly.rows, poly.cols)
+    for (m, w), c in poly.terms.items():
+        where = [i for i, a in enumerate(w) if parts(a)[0] in context.random]
+        if len(where) == 1:
+            continue
+        if len(where) not in (0, 2) or (where and where[1] != where[0] + 1):
+            raise Rejected(f"no rule for the expectation of {' '.join(w)}")
+        if not where:
+            total = total + Poly({(m, w): c}, poly.rows, poly.cols)
+            continue
+        a, b = w[where[0]], w[where[1]]
+        moment = context.moments.get((a, b))
+        if moment is None and (context.alphabet.flip(b), context.alphabet.flip(a)) in context.moments:
+            moment = context.alphabet.transpose(context.moments[context.alphabet.flip(b), context.alphabet.flip(a)])
+        if moment is None:
+            raise Rejected(f"the moment E[{a} {b}] is not declared")
+        for (n, v), d in moment.terms.items():
+            total = total + Poly({(times(m, n), w[: where[0]] + v + w[where[1] + 1 :]): c * d}, poly.rows, poly.cols)
+    return sift(total)
+
+
+def sift(poly: Poly) -> Poly:
+    """Integrate Dirac deltas: ∫ f(τ) δ(τ,σ) dτ = f(σ) for σ bound over the same interval, f(t)/2 at the end t."""
+    total = Poly({}, poly.rows, poly.cols)
+    for (m, w), c in poly.terms.items():
+        term = Poly({(m, w): c}, poly.rows, poly.cols)
+        for delta in (s for s in m if s.startswith("δ")):
+            one, two = delta[2:-1].split(",")
+            if "∫" + two not in m:
+                one, two = two, one
+            if "∫" + two in m and ("∫" + one in m or one == "t") and one != two:
+                inner = tuple(s for s in m if s not in ("∫" + two, delta))
+                term = sift(at_time(Poly({(inner, w): c / (2 if one == "t" else 1)}, poly.rows, poly.cols), two, one))
+                break
+        total = total + term
+    return total
+
+
+def variation(poly: Poly, letter: str, change: str, context: Context) -> Poly:
+    """Return the directional derivative when ``letter`` moves along ``change``, a letter that poly does not contain."""
+    if any(parts(change)[0] == parts(a)[0] for _, w in poly.terms for a in w):
+        raise Rejected(f"{change} is not a free direction")
+    for a in (a for _, w in poly.terms for a in w):
+        if parts(a)[0] != parts(letter)[0] and parts(a)[0] not in context.parameters:
+            raise Rejected(f"{a} may depend on {letter}")
+    moved = Poly({((), (change,)): 1}, *context.alphabet.shape(change))
+    plain = Context(context.alphabet, derivatives={letter: moved}, constants=context.parameters - {parts(letter)[0]})
+    return differentiate(poly, plain)
