@@ -232,13 +232,18 @@ def walk(term: Term) -> Iterator[Term]:
 
 
 # ------------------------------------------------------------------------------------------------ meaning
+class MissingInverse(Rejected):
+    """An inverse is used that is not declared, or whose reason is not proved yet."""
+
+
 @dataclass(frozen=True)
 class Reading:
-    """What a term is read in: the kernel's context, the declared inverses and the named maps of letters."""
+    """What a term is read in: the kernel's context, declared inverses, named maps of letters, adopted declarations."""
 
     context: Context
     inverses: Mapping[Poly, str] = field(default_factory=dict[Poly, str])
     maps: Mapping[str, Mapping[str, Poly]] = field(default_factory=dict[str, Mapping[str, Poly]])
+    adopted: frozenset[str] = frozenset()
 
 
 def grid_map(function: Callable[[Poly], Poly], grid: Grid) -> Grid:
@@ -338,14 +343,16 @@ def _lower_product(factors: tuple[Term, ...], reading: Reading) -> Grid:
 
 
 def _lower_inverse(body: Term, reading: Reading) -> Poly:
-    ((poly,),) = lower(body, reading)
-    alphabet = reading.context.alphabet
+    grid = lower(body, reading)
+    if len(grid) != 1 or len(grid[0]) != 1:
+        raise Rejected("the inverse of a block matrix is written out by blocks")
+    poly, alphabet = grid[0][0], reading.context.alphabet
     for candidate, turned in ((poly, False), (alphabet.transpose(poly), True)):
         name = reading.inverses.get(candidate)
         if name is not None:
             letter = alphabet.flip(name) if turned else name
             return Poly({((), (letter,)): 1}, poly.cols, poly.rows)
-    raise Rejected("an inverse is used that is not declared (or whose reason is not proved yet)")
+    raise MissingInverse("an inverse is used that is not declared, or whose reason is not proved yet")
 
 
 def _lower_block(rows: tuple[tuple[Term, ...], ...], reading: Reading) -> Grid:
@@ -384,6 +391,6 @@ def lower_trace(term: Term, reading: Reading) -> Poly:
 
 
 def _under_trace(a: Poly, b: Poly) -> Poly:
-    if a.rows != b.rows and (((), ()) in a.terms or ((), ()) in b.terms):
+    if a.rows != b.rows and any(not w for _, w in (*a.terms, *b.terms)):
         raise Rejected("traces of identities of different sizes are not combined")
     return Poly(a.terms, b.rows, b.cols) + b if a.rows != b.rows else a + b

@@ -1,0 +1,251 @@
+"""Theories: typed symbols, definitions and hypotheses, and how a statement extends what may be used.
+
+A theory is declared in Python and installed with the package. A derivation starts from ``theory.reading()`` and grows
+it by ``adopt``, one proved statement at a time; files carry names only, never relations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
+from derive.rules import Context, Fact, Grid
+from derive.terms import (
+    Dot,
+    Equation,
+    Expect,
+    Glyph,
+    MissingInverse,
+    Product,
+    Reading,
+    Symbol,
+    Term,
+    Transpose,
+    Zero,
+    lower,
+)
+
+FACT_OF = {"⪰": "psd", "≻": "pd"}
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A definition (:=) or hypothesis of a theory: its name, what it says, and a sentence for the reader."""
+
+    name: str
+    statement: Equation
+    kind: str  # "definition" | "hypothesis"
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class DeclaredInverse:
+    """A letter for the inverse of a term; it may be used once the fact ``because`` (of > 0) is there."""
+
+    name: str
+    of: Term
+    because: str
+
+
+@dataclass(frozen=True)
+class DeclaredFact:
+    """A hypothesis that is no (in)equality: 'hurwitz', 'schur', 'invertible', 'initial' (>= 0 at t0)."""
+
+    name: str
+    kind: str
+    matrix: Term
+    text: str = ""
+
+
+@dataclass
+class Theory:
+    """Symbols, definitions and hypotheses under one key; filled by its module's ``theory()`` function."""
+
+    key: str
+    title: str
+    symbols: dict[str, Symbol] = field(default_factory=dict[str, Symbol])
+    declared: dict[str, Declared | DeclaredInverse | DeclaredFact] = field(default_factory=dict)
+    random: set[str] = field(default_factory=set[str])
+    constant: set[str] = field(default_factory=set[str])
+    parameters: set[str] = field(default_factory=set[str])
+    nonnegative: set[str] = field(default_factory=set[str])
+    maps: dict[str, dict[str, Term]] = field(default_factory=dict)
+
+    def matrix(
+        self, name: str, rows: str, cols: str, glyph: Glyph | None = None, *, symmetric: bool = False,
+        random: bool = False, constant: bool = True, parameter: bool = True, show_args: tuple[str, ...] | None = None,
+        meaning: str = "", unit: str = "",
+    ) -> Symbol:  # fmt: skip
+        """Declare a matrix or vector; constant in time and untouched by the gain unless said otherwise."""
+        symbol = Symbol(
+            name, rows, cols, glyph or Glyph(name), symmetric, show_args=show_args, meaning=meaning, unit=unit
+        )
+        self.symbols[name] = symbol
+        for flag, names in ((random, self.random), (constant, self.constant), (parameter, self.parameters)):
+            if flag:
+                names.add(name)
+        return symbol
+
+    def signal(
+        self, name: str, rows: str, glyph: Glyph | None = None, *, random: bool = False, meaning: str = "",
+        unit: str = "",
+    ) -> Symbol:  # fmt: skip
+        """Declare a signal: a column that varies with time."""
+        return self.matrix(
+            name, rows, "1", glyph, random=random, constant=False, parameter=False, meaning=meaning, unit=unit
+        )
+
+    def scalar(self, name: str, glyph: Glyph | None = None, *, nonnegative: bool = False, meaning: str = "") -> Symbol:
+        """Declare a central scalar."""
+        self.symbols[name] = symbol = Symbol(name, glyph=glyph or Glyph(name), scalar=True, meaning=meaning)
+        if nonnegative:
+            self.nonnegative.add(name)
+        return symbol
+
+    def direction(self, symbol: Symbol) -> Symbol:
+        """Declare the letter along which gradients with respect to a symbol are taken."""
+        return self.matrix("δ" + symbol.name, symbol.rows, symbol.cols, parameter=False)
+
+    def define(self, name: str, lhs: Term, rhs: Term, text: str = "") -> Equation:
+        """Declare lhs := rhs, a definition of the source or of the theory."""
+        statement = Equation(lhs, ":=", rhs)
+        self.declared[name] = Declared(name, statement, "definition", text)
+        return statement
+
+    def assume(self, name: str, lhs: Term, relation: str, rhs: Term | None = None, text: str = "") -> Equation:
+        """Declare a hypothesis; ``rhs`` is zero when left out."""
+        statement = Equation(lhs, relation, rhs if rhs is not None else Zero("", ""))
+        self.declared[name] = Declared(name, statement, "hypothesis", text)
+        return statement
+
+    def fact(self, name: str, kind: str, matrix: Term, text: str = "") -> None:
+        """Declare that a matrix is Hurwitz or Schur, or at least 0 at the initial time."""
+        self.declared[name] = DeclaredFact(name, kind, matrix, text)
+
+    def inverse(self, name: str, of: Term, rows: str, *, symmetric: bool = False, because: str) -> None:
+        """Declare the letter for an inverse, usable once the fact ``because`` holds."""
+        self.symbols[name] = Symbol(name, rows, rows, Glyph(name), symmetric)
+        self.declared[name] = DeclaredInverse(name, of, because)
+
+    def alphabet(self) -> Alphabet:
+        """Return the kernel's alphabet of this theory."""
+        letters = {s.name: Letter(s.name, s.rows, s.cols, s.symmetric) for s in self.symbols.values() if not s.scalar}
+        return Alphabet(letters, frozenset(s.name for s in self.symbols.values() if s.scalar))
+
+    def reading(self) -> Reading:
+        """Return what may be used at the start: definitions, hypotheses, and inverses whose reason is a hypothesis."""
+        context = Context(
+            self.alphabet(),
+            nonnegative=frozenset(self.nonnegative),
+            constants=frozenset(self.constant),
+            parameters=frozenset(self.parameters),
+            random=frozenset(self.random),
+            facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
+        )
+        reading = Reading(context)
+        for name, images in self.maps.items():
+            lowered = {letter: lower(image, reading)[0][0] for letter, image in images.items()}
+            reading = replace(reading, maps={**reading.maps, name: lowered})
+        return self.settle(reading)
+
+    def settle(self, reading: Reading) -> Reading:
+        """Adopt every declaration whose inverses are available by now, in the order of declaration."""
+        for item in self.declared.values():
+            if item.name not in reading.adopted:
+                try:
+                    reading = declare(reading, item)
+                except MissingInverse:
+                    continue
+        return reading
+
+    def sizes(self) -> set[str]:
+        """Return the names of the dimensions."""
+        return {size for s in self.symbols.values() for size in (s.rows, s.cols) if size}
+
+
+def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact) -> Reading:
+    """Extend a reading by one declaration of the theory."""
+    if isinstance(item, Declared):
+        reading = adopt(reading, item.name, item.statement)
+    elif isinstance(item, DeclaredFact):
+        reading = _with_fact(reading, item.name, Fact(item.kind, lower(item.matrix, reading)))
+    else:
+        reading = adopt_inverse(reading, item)
+    return replace(reading, adopted=reading.adopted | {item.name})
+
+
+def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
+    """Extend a reading by a statement that is declared or proved.
+
+    d/dt x = f and E[a b'] = f become entries of the tables of derivatives and moments, X >= 0 and X > 0 facts,
+    everything else a relation lhs - rhs = 0 (one a block).
+    """
+    context, lhs, rhs = reading.context, statement.lhs, statement.rhs
+    if statement.relation in FACT_OF:
+        matrix = lower(lhs, reading) if _is_zero(rhs) else _difference(statement, reading)
+        return _with_fact(reading, name, Fact(FACT_OF[statement.relation], matrix))
+    match lhs:
+        case Dot(Symbol() as x) if x.letter not in context.derivatives:
+            ((rate,),) = lower(rhs, reading)
+            return replace(reading, context=replace(context, derivatives={**context.derivatives, x.letter: rate}))
+        case Expect(Product((Symbol() as a, Transpose(Symbol() as b)))):
+            ((moment,),) = lower(rhs, reading)
+            key = (a.letter, context.alphabet.flip(b.letter))
+            if key not in context.moments:
+                return replace(reading, context=replace(context, moments={**context.moments, key: moment}))
+        case _:
+            pass
+    grid = _difference(statement, reading)
+    named = {name if len(grid) == len(row) == 1 else f"{name}[{i + 1},{j + 1}]": p
+             for i, row in enumerate(grid) for j, p in enumerate(row) if p.terms}  # fmt: skip
+    return replace(reading, context=replace(context, relations={**context.relations, **named}))
+
+
+def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
+    """Extend a reading by the two relations of an inverse, if its reason, a fact of > 0 on that matrix, holds.
+
+    Raises:
+        MissingInverse: the reason is not proved yet.
+    """
+    context = reading.context
+    ((poly,),) = lower(item.of, reading)
+    reason = context.facts.get(item.because)
+    if reason is None:
+        raise MissingInverse(f"{item.because} is not proved yet")
+    if reason.kind not in ("pd", "invertible") or reason.matrix != ((poly,),):
+        raise Rejected(f"{item.because} is not a reason why {item.name} exists")
+    inverse = Poly({((), (item.name,)): Fraction(1)}, poly.cols, poly.rows)
+    relations = {
+        **context.relations,
+        f"{item.name}.right": poly * inverse - identity(poly.rows),
+        f"{item.name}.left": inverse * poly - identity(poly.cols),
+    }
+    return replace(
+        reading,
+        context=replace(context, relations=relations),
+        inverses={**reading.inverses, poly: item.name},
+    )
+
+
+def names_of(name: str, relations: Mapping[str, Poly]) -> list[str]:
+    """Return the relations that a declaration or lemma stands for: itself, its blocks, or both sides of an inverse."""
+    return [r for r in relations if r == name or r.startswith((name + "[", name + "."))]
+
+
+def _with_fact(reading: Reading, name: str, fact: Fact) -> Reading:
+    return replace(reading, context=replace(reading.context, facts={**reading.context.facts, name: fact}))
+
+
+def _is_zero(term: Term) -> bool:
+    return isinstance(term, Zero)
+
+
+def _difference(statement: Equation, reading: Reading) -> Grid:
+    if _is_zero(statement.rhs):
+        return lower(statement.lhs, reading)
+    lhs, rhs = lower(statement.lhs, reading), lower(statement.rhs, reading)
+    if len(lhs) != len(rhs) or len(lhs[0]) != len(rhs[0]):
+        raise Rejected("the two sides have different block shapes")
+    return tuple(tuple(p - q for p, q in zip(r, s, strict=True)) for r, s in zip(lhs, rhs, strict=True))

@@ -1,0 +1,299 @@
+"""Derivations: steps with their proofs, lectures made of them, and the replay that trusts neither.
+
+A step states ``before relation after`` and carries what the kernel needs to accept it. ``verify`` starts from the
+installed theory, checks the steps in order and lets a proved step serve as a lemma for later ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Literal
+
+from derive.context import Theory, adopt
+from derive.kernel import Certificate, Poly, Rejected, replay
+from derive.kernel import Term as Addend
+from derive.rules import Comparison, Grid, Positivity, replay_comparison, replay_positivity, variation
+from derive.terms import (
+    Dot,
+    Equation,
+    Expect,
+    Gradient,
+    Image,
+    Integral,
+    Neg,
+    Reading,
+    Sum,
+    Term,
+    Trace,
+    Zero,
+    lower,
+    lower_trace,
+)
+
+Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "chain"]
+Text = tuple["str | Term | Equation", ...]
+DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What the kernel replays: identities in the order of the blocks, or a positivity or comparison certificate."""
+
+    identities: tuple[Certificate, ...] = ()
+    positivity: Positivity | None = None
+    comparison: Comparison | None = None
+    links: tuple[str, ...] = ()
+
+    def relations(self) -> set[str]:
+        """Return the names of the relations and facts that the proof uses."""
+        addends: list[Addend] = [t for c in self.identities for t in c.terms]
+        names: set[str] = set(self.links)
+        if self.positivity:
+            addends += [t for row in self.positivity.terms for ts in row for t in ts]
+            addends += self.positivity.inverse_terms
+            names |= {s.fact for s in self.positivity.squares}
+        if self.comparison:
+            addends += self.comparison.terms
+            names |= {self.comparison.stable, self.comparison.forcing}
+        return names | {t.relation for t in addends}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: the statement, the rule that carries it, a sentence for the reader, the proof, and what it uses.
+
+    ``lemma`` steps may be used by later ones. ``number`` is the equation's number in ``source``, if it has one.
+    """
+
+    name: str
+    statement: Equation
+    rule: Rule
+    reason: Text
+    proof: Proof
+    uses: tuple[str, ...] = ()
+    number: str = ""
+    source: str = ""
+    lemma: bool = False
+
+
+def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificate]:
+    """Return the claims (certificates without addends) that a statement stands for under a rule.
+
+    identity: lhs - rhs = 0, block by block. apply: both sides are the same operator, so it is enough that the bodies
+    agree. trace: under the trace. gradient: the directional derivative of the trace along H is tr(G' H).
+    """
+    lhs, rhs = statement.lhs, statement.rhs
+    if rule == "gradient":
+        return [Certificate(_gradient_claim(lhs, rhs, reading), trace=True)]
+    if rule == "trace":
+        return [Certificate(lower_trace(Sum((lhs, Neg(rhs))), reading), trace=True)]
+    if rule == "apply":
+        lhs, rhs = _bodies(lhs, rhs)
+    left, right = lower(lhs, reading), _like(rhs, lhs, reading)
+    if len(left) != len(right) or len(left[0]) != len(right[0]):
+        raise Rejected("the two sides have different block shapes")
+    return [Certificate(p - q) for r, s in zip(left, right, strict=True) for p, q in zip(r, s, strict=True)]
+
+
+def _bodies(lhs: Term, rhs: Term) -> tuple[Term, Term]:
+    """Strip the same operators from both sides."""
+    match lhs, rhs:
+        case (Dot(a), Dot(b)) | (Expect(a), Expect(b)) | (Trace(a), Trace(b)):
+            return (a, b) if not isinstance(a, (Dot, Expect)) else _bodies(a, b)
+        case (Integral(a, s), Integral(b, t)) if s == t:
+            return a, b
+        case (Image(f, a), Image(g, b)) if f == g:
+            raise Rejected("a map of letters need not respect the relations; state the images instead")
+        case _:
+            raise Rejected("the rule 'apply' needs the same operator on both sides")
+
+
+def _gradient_claim(lhs: Term, rhs: Term, reading: Reading) -> Poly:
+    if not isinstance(lhs, Gradient):
+        raise Rejected("the rule 'gradient' needs a gradient on the left")
+    letter, change = lhs.symbol.letter, DIRECTION + lhs.symbol.letter
+    moved = variation(lower_trace(lhs.body, reading), letter, change, reading.context)
+    ((gradient,),) = _like(rhs, lhs.symbol, reading)
+    along = Poly({((), (change,)): 1}, *reading.context.alphabet.shape(letter))
+    product = reading.context.alphabet.transpose(gradient) * along
+    return Poly(moved.terms, product.rows, product.cols) - product
+
+
+def _like(term: Term, other: Term, reading: Reading) -> Grid:
+    """Read a term; a bare zero takes the type of the other side."""
+    if isinstance(term, Zero) and not term.rows:
+        return tuple(tuple(Poly({}, p.rows, p.cols) for p in row) for row in lower(other, reading))
+    return lower(term, reading)
+
+
+def order_claim(statement: Equation, reading: Reading) -> Grid:
+    """Return lhs - rhs of a Loewner statement, block by block."""
+    left, right = lower(statement.lhs, reading), _like(statement.rhs, statement.lhs, reading)
+    return tuple(tuple(p - q for p, q in zip(r, s, strict=True)) for r, s in zip(left, right, strict=True))
+
+
+def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
+    """Replay one step, or raise Rejected."""
+    context, proof = reading.context, step.proof
+    if step.rule == "chain":
+        _check_chain(step, earlier)
+    elif step.rule in ("positivity", "comparison"):
+        grid = order_claim(step.statement, reading)
+        if step.rule == "positivity" and proof.positivity:
+            kind = replay_positivity(proof.positivity, grid, context)
+        elif step.rule == "comparison" and proof.comparison and len(grid) == len(grid[0]) == 1:
+            kind = replay_comparison(proof.comparison, grid[0][0], context)
+        else:
+            raise Rejected("the proof is of another kind than the rule")
+        if step.statement.relation not in ("⪰", "≻") or (step.statement.relation == "≻" and kind != "pd"):
+            raise Rejected(f"{step.statement.relation} is not what the certificate shows")
+    else:
+        if step.statement.relation != "=":
+            raise Rejected(f"the rule {step.rule!r} proves equations, not {step.statement.relation}")
+        wanted = claims(step.statement, step.rule, reading)
+        if len(wanted) != len(proof.identities):
+            raise Rejected(f"{len(wanted)} identities are needed, the proof has {len(proof.identities)}")
+        for claim, certificate in zip(wanted, proof.identities, strict=True):
+            if certificate.trace != claim.trace:
+                raise Rejected("a certificate under the trace does not prove the matrices equal")
+            replay(certificate, claim.claim, context.relations, context.alphabet)
+
+
+def _check_chain(step: Step, earlier: dict[str, Step]) -> None:
+    """Accept a = z from a = b, b = c, ..., y = z proved before."""
+    links = [earlier.get(name) for name in step.proof.links]
+    if not links or any(s is None or s.statement.relation != "=" for s in links):
+        raise Rejected("a chain needs equations that are proved before it")
+    ends = [(s.statement.lhs, s.statement.rhs) for s in links if s]
+    if any(a[1] != b[0] for a, b in pairwise(ends)):
+        raise Rejected("the links of the chain do not meet")
+    if (ends[0][0], ends[-1][1]) != (step.statement.lhs, step.statement.rhs) or step.statement.relation != "=":
+        raise Rejected("the chain has other ends")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What the replay said of one step: accepted, or the reason why not."""
+
+    step: str
+    accepted: bool
+    message: str = ""
+
+
+def verify(theory: Theory, steps: Sequence[Step]) -> list[Outcome]:
+    """Replay steps in order from the installed theory; a rejected step serves no later one."""
+    reading, earlier, outcomes = theory.reading(), dict[str, Step](), list[Outcome]()
+    for step in steps:
+        try:
+            if step.name in earlier or step.name in theory.declared:
+                raise Rejected(f"the name {step.name} is taken")
+            check(step, reading, earlier)
+        except (Rejected, ValueError) as error:
+            outcomes.append(Outcome(step.name, False, str(error)))
+            continue
+        earlier[step.name] = step
+        outcomes.append(Outcome(step.name, True))
+        reading = learn(reading, theory, step)
+    return outcomes
+
+
+def learn(reading: Reading, theory: Theory, step: Step) -> Reading:
+    """Let a proved step serve as a lemma, and take up declarations that waited for it."""
+    return theory.settle(adopt(reading, step.name, step.statement)) if step.lemma else reading
+
+
+# ------------------------------------------------------------------------------------------------ lectures
+@dataclass(frozen=True)
+class Heading:
+    """A section of a lecture."""
+
+    title: str
+
+
+@dataclass(frozen=True)
+class Paragraph:
+    """Running text; terms and equations in it are typeset inline."""
+
+    text: Text
+
+
+@dataclass(frozen=True)
+class Given:
+    """Equations that the source or the theory defines or assumes; they carry no proof."""
+
+    rows: tuple[GivenRow, ...]
+
+
+@dataclass(frozen=True)
+class GivenRow:
+    """One defining equation or hypothesis, by its name in the theory."""
+
+    statement: Equation
+    name: str = ""
+    kind: Literal["definition", "hypothesis"] = "definition"
+    number: str = ""
+    source: str = ""
+    reason: Text = ()
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A chain of steps, displayed one under the other; ``title`` names what is derived."""
+
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """An exact instance that separates a printed formula from the true one: values and what each side gives."""
+
+    values: tuple[tuple[str | Term, str], ...]
+    results: tuple[tuple[str | Term, str], ...]
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """A formula of a source that is false, incomplete or silent, with the evidence and the true formula."""
+
+    source: str
+    number: str
+    finding: Literal["false", "incomplete", "assumption", "silent"]
+    printed: Equation | Text
+    text: Text
+    evidence: tuple[Evidence, ...] = ()
+    true: Equation | None = None
+    proved_by: str = ""
+
+
+Item = Heading | Paragraph | Given | Derived | Erratum
+
+
+@dataclass(frozen=True)
+class Lecture:
+    """A lecture: items in order, over one theory."""
+
+    key: str
+    title: str
+    theory: Theory
+    items: tuple[Item, ...]
+    sources: tuple[str, ...] = ()
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """All steps in order."""
+        return tuple(s for item in self.items if isinstance(item, Derived) for s in item.steps)
+
+    @property
+    def errata(self) -> tuple[Erratum, ...]:
+        """All errata in order."""
+        return tuple(item for item in self.items if isinstance(item, Erratum))
+
+    def step(self, name: str) -> Step:
+        """Return the step of that name."""
+        return next(s for s in self.steps if s.name == name)
+
+    def verify(self) -> list[Outcome]:
+        """Replay every step with the kernel."""
+        return verify(self.theory, self.steps)

@@ -1,0 +1,277 @@
+"""Write a lecture: state what follows, and let the prover find the certificate that the kernel replays.
+
+Nothing enters a lecture unproved: a step whose certificate is not found raises ``NotDerived`` when the lecture is built.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Literal
+
+from derive.context import Theory, names_of
+from derive.derivation import (
+    Derived,
+    Erratum,
+    Evidence,
+    Given,
+    GivenRow,
+    Heading,
+    Item,
+    Lecture,
+    Paragraph,
+    Proof,
+    Rule,
+    Step,
+    Text,
+    check,
+    claims,
+    learn,
+    order_claim,
+)
+from derive.kernel import Poly, Rejected, identity
+from derive.kernel import Term as Addend
+from derive.matrix.search import prove
+from derive.rules import Comparison, Grid, Positivity, Square, differentiate
+from derive.terms import Equation, Reading, Term, lower
+
+
+class NotDerived(Exception):  # noqa: N818 - a statement of fact about the lecture
+    """A step of a lecture for which no certificate was found, or whose certificate the kernel rejects."""
+
+
+@dataclass(frozen=True)
+class SquareOf:
+    """A proposed addend c F H F' of a positivity proof: the factor as a term, H by the name of its fact."""
+
+    factor: Term
+    fact: str
+    coefficient: Fraction = Fraction(1)
+
+
+class Builder:
+    """Collect the items of one lecture over one theory."""
+
+    def __init__(self, theory: Theory, key: str, title: str, sources: Sequence[str] = ()):
+        self.theory, self.key, self.title, self.sources = theory, key, title, tuple(sources)
+        self.reading: Reading = theory.reading()
+        self.items: list[Item] = []
+        self.steps: dict[str, Step] = {}
+
+    def heading(self, title: str) -> None:
+        """Start a section."""
+        self.items.append(Heading(title))
+
+    def say(self, *text: str | Term | Equation) -> None:
+        """Add a paragraph; terms and equations are typeset inline."""
+        self.items.append(Paragraph(text))
+
+    def given(self, *names: str, numbers: Sequence[str] = (), source: str = "", reasons: Sequence[str] = ()) -> None:
+        """Display declarations of the theory by name."""
+        rows: list[GivenRow] = []
+        for i, name in enumerate(names):
+            item = self.theory.declared[name]
+            number = numbers[i] if i < len(numbers) else ""
+            reason = (reasons[i],) if i < len(reasons) and reasons[i] else (item.text,) if item.text else ()
+            rows.append(GivenRow(item.statement, name, item.kind, number, source if number else "", reason))
+        self.items.append(Given(tuple(rows)))
+
+    def chain(self, start: Term) -> Chain:
+        """Start a chain of equations from a term."""
+        return Chain(self, start)
+
+    def erratum(
+        self,
+        source: str,
+        number: str,
+        finding: Literal["false", "incomplete", "assumption", "silent"],
+        printed: Equation | Text,
+        *text: str | Term | Equation,
+        evidence: Sequence[Evidence] = (),
+        true: Equation | None = None,
+        proved_by: str = "",
+    ) -> None:
+        """Record what is wrong or missing in a source, with its evidence."""
+        if proved_by and proved_by not in self.steps:
+            raise NotDerived(f"{self.key}: the erratum names {proved_by!r}, which is not a step of this lecture")
+        self.items.append(Erratum(source, number, finding, printed, text, tuple(evidence), true, proved_by))
+
+    def prove(self, claim: Poly, using: Sequence[str], trace: bool = False, label: str = "") -> tuple[Addend, ...]:
+        """Find the addends of a certificate from the named relations and lemmas."""
+        relations = self.reading.context.relations
+        allowed = {r: relations[r] for name in using for r in names_of(name, relations)}
+        found = prove(claim, allowed, self.reading.context.alphabet, trace=trace)
+        if found is None:
+            raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(using) or 'nothing'}")
+        return found.terms
+
+    def record(self, step: Step) -> Step:
+        """Replay a step with the kernel and keep it; a lemma may be used from now on."""
+        try:
+            check(step, self.reading, self.steps)
+        except Rejected as error:
+            raise NotDerived(f"{self.key}: step {step.name!r}: {error}") from error
+        if step.name in self.steps:
+            raise NotDerived(f"{self.key}: two steps are called {step.name!r}")
+        self.steps[step.name] = step
+        self.reading = learn(self.reading, self.theory, step)
+        return step
+
+    def state(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        using: Sequence[str] = (),
+        *,
+        rule: Rule = "identity",
+        number: str = "",
+        source: str = "",
+        lemma: bool = True,
+    ) -> Step:
+        """Prove and display one equation on its own."""
+        step = self.equation(name, statement, reason, using, rule, number, source, lemma)
+        self.items.append(Derived((step,)))
+        return step
+
+    def equation(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        using: Sequence[str],
+        rule: Rule,
+        number: str = "",
+        source: str = "",
+        lemma: bool = False,
+    ) -> Step:
+        """Prove one equation without displaying it."""
+        try:
+            wanted = claims(statement, rule, self.reading)
+        except Rejected as error:
+            raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
+        proofs = tuple(replace(c, terms=self.prove(c.claim, using, c.trace, name)) for c in wanted)
+        text = (reason,) if isinstance(reason, str) else reason
+        step = Step(name, statement, rule, text, Proof(proofs), tuple(using), number, source, lemma)
+        return self.record(step)
+
+    def positive(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        squares: Sequence[SquareOf],
+        using: Sequence[str] = (),
+        *,
+        strict: tuple[int, Term] | None = None,
+        number: str = "",
+        source: str = "",
+    ) -> Step:
+        """Prove lhs ⪰ rhs (or ≻: ``strict`` is the index of the square and the right inverse of its factor)."""
+        context = self.reading.context
+        claim = order_claim(statement, self.reading)
+        made = [Square(s.coefficient, (), lower(s.factor, self.reading), s.fact) for s in squares]
+        terms = tuple(tuple(self.prove(rest, using, label=name) for rest in row) for row in self._rests(claim, made))
+        proof = Positivity(claim, tuple(made), terms)
+        if strict:
+            inverse = lower(strict[1], self.reading)[0][0]
+            injective = made[strict[0]].factor[0][0] * inverse - identity(claim[0][0].rows)
+            proof = replace(
+                proof, strict=strict[0], inverse=inverse, inverse_terms=self.prove(injective, using, label=name)
+            )
+        text = (reason,) if isinstance(reason, str) else reason
+        step = Step(
+            name, statement, "positivity", text, Proof(positivity=proof), tuple(using), number, source, lemma=True
+        )
+        self.items.append(Derived((self.record(step),)))
+        assert context is not None
+        return step
+
+    def _rests(self, claim: Grid, squares: Sequence[Square]) -> Grid:
+        flip = self.reading.context.alphabet.transpose
+        out: list[tuple[Poly, ...]] = []
+        for i, row in enumerate(claim):
+            line: list[Poly] = []
+            for j, rest in enumerate(row):
+                for s in squares:
+                    core = self.reading.context.fact(s.fact, "psd", "pd").matrix
+                    for k, core_row in enumerate(core):
+                        for m, h in enumerate(core_row):
+                            rest = rest - (s.factor[i][k] * h * flip(s.factor[j][m])).scale(s.coefficient, s.scalars)
+                line.append(rest)
+            out.append(tuple(line))
+        return tuple(out)
+
+    def compare(
+        self,
+        name: str,
+        kind: str,
+        statement: Equation,
+        reason: str | Text,
+        matrix: Term,
+        stable: str,
+        forcing: str,
+        using: Sequence[str] = (),
+        *,
+        number: str = "",
+        source: str = "",
+    ) -> Step:
+        """Prove lhs ⪰ rhs by comparison: a Lyapunov or Stein equation with a stable matrix, or from the initial time."""
+        context, flip = self.reading.context, self.reading.context.alphabet.transpose
+        d, m = order_claim(statement, self.reading)[0][0], lower(matrix, self.reading)[0][0]
+        f = context.fact(forcing, "psd", "pd").matrix[0][0]
+        equation = m * d * flip(m) - d + f if kind == "stein" else m * d + d * flip(m) + f
+        if kind == "transient":
+            equation = equation - differentiate(d, context)
+        proof = Comparison(kind, d, m, stable, forcing, self.prove(equation, using, label=name))
+        text = (reason,) if isinstance(reason, str) else reason
+        step = Step(
+            name, statement, "comparison", text, Proof(comparison=proof), tuple(using), number, source, lemma=True
+        )
+        self.items.append(Derived((self.record(step),)))
+        return step
+
+    def lecture(self) -> Lecture:
+        """Close the lecture; every declaration of the theory must have come into force."""
+        waiting = set(self.theory.declared) - self.reading.adopted
+        if waiting:
+            raise NotDerived(
+                f"{self.key}: declarations whose inverse was never justified: {', '.join(sorted(waiting))}"
+            )
+        return Lecture(self.key, self.title, self.theory, tuple(self.items), self.sources)
+
+
+class Chain:
+    """A chain of equations t0 = t1 = t2 ...; ``close`` states its ends as a lemma and displays it."""
+
+    def __init__(self, builder: Builder, start: Term):
+        self.builder, self.start, self.end = builder, start, start
+        self.links: list[Step] = []
+
+    def to(
+        self,
+        after: Term,
+        reason: str | Text,
+        using: Sequence[str] = (),
+        *,
+        rule: Rule = "identity",
+        number: str = "",
+        source: str = "",
+        name: str = "",
+    ) -> Chain:
+        """Prove that the last term equals ``after``."""
+        label = name or f"{self.builder.key}.{len(self.builder.steps) + 1}"
+        statement = Equation(self.end, "=", after)
+        self.links.append(self.builder.equation(label, statement, reason, using, rule, number, source))
+        self.end = after
+        return self
+
+    def close(self, name: str, reason: str | Text = "the ends of this chain", *, number: str = "", source: str = "") -> Step:  # fmt: skip
+        """State first = last as a lemma that later steps may use, and display the chain."""
+        statement = Equation(self.start, "=", self.end)
+        text = (reason,) if isinstance(reason, str) else reason
+        proof = Proof(links=tuple(s.name for s in self.links))
+        lemma = self.builder.record(Step(name, statement, "chain", text, proof, (), number, source, lemma=True))
+        self.builder.items.append(Derived((*self.links, lemma)))
+        return lemma
