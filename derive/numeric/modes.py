@@ -23,8 +23,8 @@ def spectral_scale(A: Matrix, time: Time) -> float:
     return norm if time == "continuous" else max(norm, 1.0)
 
 
-def distance_to_stability(modes: NDArray[Any], time: Time) -> Matrix:
-    """Return Re lambda (continuous) or |lambda| - 1 (discrete): negative for stable modes."""
+def distance_to_stability(modes: Any, time: Time) -> Any:
+    """Return Re lambda (continuous) or |lambda| - 1 (discrete) of one mode or several: negative for stable ones."""
     return np.real(modes) if time == "continuous" else np.abs(modes) - 1.0
 
 

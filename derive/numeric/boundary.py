@@ -1,0 +1,131 @@
+"""Modes on the boundary of stability that the process noise does not excite, where the error covariance vanishes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.numeric.modes import Matrix, Time, distance_to_stability, spectral_scale
+
+__all__ = ["Boundary", "unexcited_boundary"]
+
+CANDIDATE_RTOL = 1e-3
+"""Distance from the boundary within which a mode is looked at: a computed quadruple mode is good to eps^(1/4) only."""
+
+BOUNDARY_RTOL = 1e-11
+"""Distance of a mode, or of the mean of a cluster, that counts as zero. A mean is accurate where its modes are not."""
+
+CLUSTER_RTOLS = (0.0, 1e-7, 1e-5, 1e-4, 1e-3)
+"""Distances at which neighbouring modes are taken as one multiple mode, tried in this order."""
+
+RANK_RTOL = 64 * np.finfo(float).eps
+"""Singular value that counts as zero, relative and times n."""
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary:
+    """The left-invariant subspace of the unexcited boundary modes.
+
+    Attributes:
+        kept: orthonormal basis (n, n - k) of the complement, in which the Riccati equation is left to solve.
+        removed: orthonormal basis (n, k) of the subspace, F' removed = removed Lambda and W removed = 0.
+        modes: eigenvalues of Lambda (k,), moved onto the boundary.
+    """
+
+    kept: Matrix
+    removed: Matrix
+    modes: NDArray[np.complexfloating[Any, Any]]
+
+
+def unexcited_boundary(F: Matrix, W: Matrix, time: Time, noise_size: float, slack: float = 1.0) -> Boundary:
+    """Find the largest subspace X with F' X in X, W X = 0 and the spectrum of F' on X on the boundary.
+
+    On X every solution P >= 0 vanishes: for a left eigenvector x, 2 Re(lambda) x*Px = |V^(-1/2) C P x|^2 gives
+    C P x = 0, so P x is an eigenvector of F that C does not see, hence 0 when (F, C) is detectable; Jordan chains
+    follow by induction. With P = U Pi U', U = `kept`, the equation for Pi has U'F U, C U and U'W U, and all its
+    boundary modes are excited.
+
+    Args:
+        F: A - N V^-1 C (n, n), balanced.
+        W: W - N V^-1 N' (n, n), in the same coordinates.
+        time: "continuous" or "discrete".
+        noise_size: size of the process noise to which rounding in W is relative.
+        slack: factor on the tolerances, for data that carry the rounding of earlier computations.
+    """
+    n = len(F)
+    scale = spectral_scale(F, time)
+    nothing = Boundary(np.eye(n), np.zeros((n, 0)), np.zeros(0, complex))
+    near = _invariant(F.T, lambda mode: bool(abs(distance_to_stability(mode, time)) <= CANDIDATE_RTOL * scale))
+    rtol = slack * n * RANK_RTOL
+    near = near @ _unexcited(near.T @ F.T @ near, W @ near, rtol * noise_size, rtol * scale)
+    if near.shape[1] == 0:
+        return nothing
+    restricted = near.T @ F.T @ near
+    modes = np.linalg.eigvals(restricted)
+    clusters = _boundary_clusters(list(modes), time, scale, slack * BOUNDARY_RTOL * scale)
+    if not clusters:
+        return nothing
+    chosen = [mode for cluster in clusters for mode in cluster]
+    others = [mode for mode in modes if mode not in chosen]
+    removed = near @ _invariant(restricted, lambda mode: _nearest(mode, chosen) <= _nearest(mode, others))
+    kept = np.linalg.qr(removed, mode="complete")[0][:, removed.shape[1] :]
+    means = np.concatenate([np.full(len(cluster), np.mean(cluster)) for cluster in clusters])
+    return Boundary(kept, removed, _snapped(means, time))
+
+
+def _invariant(F: Matrix, selected: Callable[[complex], bool]) -> Matrix:
+    """Return an orthonormal real basis of the invariant subspace for the selected modes and their conjugates."""
+    from scipy.linalg import schur
+
+    _, Z, k = cast(tuple[Any, Any, int], schur(F, output="complex", sort=selected))
+    basis = np.linalg.svd(np.hstack([Z[:, :k].real, Z[:, :k].imag]), full_matrices=False)[0]
+    return basis[:, :k]
+
+
+def _unexcited(F: Matrix, W: Matrix, noise_tol: float, rate_tol: float) -> Matrix:
+    """Return an orthonormal basis of the largest F-invariant subspace in the kernel of W."""
+    K = _kernel(W, noise_tol)
+    while K.shape[1]:
+        leaving = F @ K - K @ (K.T @ F @ K)
+        inner = _kernel(leaving, rate_tol)
+        if inner.shape[1] == K.shape[1]:
+            return K
+        K = K @ inner
+    return K
+
+
+def _kernel(X: Matrix, tol: float) -> Matrix:
+    _, sizes, rows = np.linalg.svd(X)
+    return rows[np.count_nonzero(sizes > tol) :].T
+
+
+def _boundary_clusters(modes: list[complex], time: Time, scale: float, tol: float) -> list[list[complex]]:
+    """Return the clusters of modes whose mean is on the boundary, the tightest clusters first."""
+    found: list[list[complex]] = []
+    for rtol in CLUSTER_RTOLS:
+        rest = [mode for mode in modes if not any(mode in cluster for cluster in found)]
+        for cluster in _clusters(rest, rtol * scale):
+            if abs(distance_to_stability(np.mean(cluster), time)) <= tol:
+                found.append(cluster)
+    return found
+
+
+def _clusters(modes: list[complex], distance: float) -> list[list[complex]]:
+    """Group modes into chains of neighbours at most `distance` apart."""
+    clusters: list[list[complex]] = []
+    for mode in modes:
+        linked = [group for group in clusters if min(abs(mode - other) for other in group) <= distance]
+        clusters = [group for group in clusters if group not in linked]
+        clusters.append([mode, *(other for group in linked for other in group)])
+    return clusters
+
+
+def _nearest(mode: complex, modes: Any) -> float:
+    return min((abs(mode - other) for other in modes), default=np.inf)
+
+
+def _snapped(modes: NDArray[Any], time: Time) -> NDArray[Any]:
+    modes = 1j * np.imag(modes) if time == "continuous" else modes / np.abs(modes)
+    return modes[np.lexsort((np.imag(modes), np.real(modes)))]
