@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from typing import Literal
 
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.rules import Context, Fact, Grid
@@ -36,7 +37,7 @@ class Declared:
 
     name: str
     statement: Equation
-    kind: str  # "definition" | "hypothesis"
+    kind: Literal["definition", "hypothesis"]
     text: str = ""
 
 
@@ -68,6 +69,7 @@ class Theory:
     symbols: dict[str, Symbol] = field(default_factory=dict[str, Symbol])
     declared: dict[str, Declared | DeclaredInverse | DeclaredFact] = field(default_factory=dict)
     random: set[str] = field(default_factory=set[str])
+    uncentred: set[str] = field(default_factory=set[str])
     constant: set[str] = field(default_factory=set[str])
     parameters: set[str] = field(default_factory=set[str])
     nonnegative: set[str] = field(default_factory=set[str])
@@ -88,14 +90,33 @@ class Theory:
                 names.add(name)
         return symbol
 
-    def signal(
-        self, name: str, rows: str, glyph: Glyph | None = None, *, random: bool = False, meaning: str = "",
-        unit: str = "",
+    def varying(
+        self, name: str, rows: str, cols: str, glyph: Glyph | None = None, *, symmetric: bool = False,
+        parameter: bool = True, meaning: str = "", unit: str = "",
     ) -> Symbol:  # fmt: skip
-        """Declare a signal: a column that varies with time."""
-        return self.matrix(
-            name, rows, "1", glyph, random=random, constant=False, parameter=False, meaning=meaning, unit=unit
+        """Declare a matrix that varies with time: M means M(t), and the argument is printed when it is another time."""
+        plain = self.matrix(
+            name,
+            rows,
+            cols,
+            glyph,
+            symmetric=symmetric,
+            constant=False,
+            parameter=parameter,
+            meaning=meaning,
+            unit=unit,
         )
+        self.symbols[name] = replace(plain, args=("t",), show_args=())
+        return self.symbols[name]
+
+    def signal(
+        self, name: str, rows: str, glyph: Glyph | None = None, *, mean: Literal["zero", "any"] = "zero",
+        meaning: str = "", unit: str = "",
+    ) -> Symbol:  # fmt: skip
+        """Declare a random signal x = x(t); with a mean that is not zero its expectation has no rule."""
+        symbol = self.varying(name, rows, "1", glyph, parameter=False, meaning=meaning, unit=unit)
+        (self.random if mean == "zero" else self.uncentred).add(name)
+        return symbol
 
     def scalar(self, name: str, glyph: Glyph | None = None, *, nonnegative: bool = False, meaning: str = "") -> Symbol:
         """Declare a central scalar."""
@@ -142,6 +163,7 @@ class Theory:
             constants=frozenset(self.constant),
             parameters=frozenset(self.parameters),
             random=frozenset(self.random),
+            uncentred=frozenset(self.uncentred),
             facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
         )
         reading = Reading(context)

@@ -14,7 +14,16 @@ from typing import Literal
 from derive.context import Theory, adopt
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
-from derive.rules import Comparison, Grid, Positivity, replay_comparison, replay_positivity, variation
+from derive.rules import (
+    Comparison,
+    Grid,
+    Positivity,
+    Uniqueness,
+    replay_comparison,
+    replay_positivity,
+    replay_uniqueness,
+    variation,
+)
 from derive.terms import (
     Dot,
     Equation,
@@ -32,7 +41,7 @@ from derive.terms import (
     lower_trace,
 )
 
-Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "chain"]
+Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain"]
 Text = tuple["str | Term | Equation", ...]
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
@@ -44,6 +53,7 @@ class Proof:
     identities: tuple[Certificate, ...] = ()
     positivity: Positivity | None = None
     comparison: Comparison | None = None
+    uniqueness: Uniqueness | None = None
     links: tuple[str, ...] = ()
 
     def relations(self) -> set[str]:
@@ -57,6 +67,8 @@ class Proof:
         if self.comparison:
             addends += self.comparison.terms
             names |= {self.comparison.stable, self.comparison.forcing}
+        if self.uniqueness:
+            addends += self.uniqueness.rate_terms + self.uniqueness.initial_terms
         return names | {t.relation for t in addends}
 
 
@@ -129,7 +141,7 @@ def _like(term: Term, other: Term, reading: Reading) -> Grid:
 
 
 def order_claim(statement: Equation, reading: Reading) -> Grid:
-    """Return lhs - rhs of a Loewner statement, block by block."""
+    """Return lhs - rhs, block by block."""
     left, right = lower(statement.lhs, reading), _like(statement.rhs, statement.lhs, reading)
     return tuple(tuple(p - q for p, q in zip(r, s, strict=True)) for r, s in zip(left, right, strict=True))
 
@@ -152,6 +164,12 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     else:
         if step.statement.relation != "=":
             raise Rejected(f"the rule {step.rule!r} proves equations, not {step.statement.relation}")
+        if step.rule == "uniqueness":
+            if proof.uniqueness is None:
+                raise Rejected("the proof is of another kind than the rule")
+            ((claim,),) = order_claim(step.statement, reading)
+            replay_uniqueness(proof.uniqueness, claim, context)
+            return
         wanted = claims(step.statement, step.rule, reading)
         if len(wanted) != len(proof.identities):
             raise Rejected(f"{len(wanted)} identities are needed, the proof has {len(proof.identities)}")

@@ -168,6 +168,32 @@ class Alphabet:
         return {k: c for k, c in out.items() if c}
 
 
+def at_time(poly: Poly, variable: str, value: str) -> Poly:
+    """Set a time variable: f(..., variable, ...) becomes f(..., value, ...) in letters and deltas."""
+
+    def move(name: str) -> str:
+        head, sign, tail = name[:-1].partition("(") if name.startswith("δ") else name.partition("@")
+        return head + sign + ",".join(value if a == variable else a for a in tail.split(",")) + ")" * (sign == "(")
+
+    terms: dict[Key, Fraction] = {}
+    for (m, w), c in poly.terms.items():
+        key = tuple(sorted(map(move, m))), tuple(map(move, w))
+        terms[key] = terms.get(key, Fraction(0)) + c
+    return Poly(terms, poly.rows, poly.cols)
+
+
+def sample(poly: Poly) -> Poly:
+    """Write f(τ) δ(t,τ) as f(t) δ(t,τ), the sampling property of the Dirac delta."""
+    total = Poly({}, poly.rows, poly.cols)
+    for (m, w), c in poly.terms.items():
+        term = Poly({((), w): c}, poly.rows, poly.cols)
+        for delta in (d for d in m if d.startswith("δ")):
+            one, two = delta[2:-1].split(",")
+            term = at_time(term, two, one)
+        total = total + term.scale(1, m)
+    return total
+
+
 @dataclass(frozen=True)
 class Term:
     """One addend c * scalars * left * relation * right of a certificate."""
@@ -207,7 +233,7 @@ def replay(certificate: Certificate, claim: Poly, relations: Mapping[str, Poly],
         alphabet.check(addend, certificate.trace)
         for key, c in addend.terms.items():
             rest[key] = rest.get(key, Fraction(0)) - c
-    remainder = Poly(rest, claim.rows, claim.cols)
+    remainder = sample(Poly(rest, claim.rows, claim.cols))
     left_over = alphabet.cyclic(remainder) if certificate.trace else remainder.terms
     if left_over:
         raise Rejected(f"the addends do not make up the claim; {len(left_over)} terms remain")

@@ -10,7 +10,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from derive.kernel import Alphabet, Certificate, Key, Poly, Rejected, Scalars, Term, identity, parts, replay, times
+from derive.kernel import (
+    Alphabet,
+    Certificate,
+    Poly,
+    Rejected,
+    Scalars,
+    Term,
+    at_time,
+    identity,
+    parts,
+    replay,
+    times,
+)
 
 Grid = tuple[tuple[Poly, ...], ...]
 
@@ -64,7 +76,8 @@ class Context:
     """What may be used.
 
     Letters, relations (each = 0), facts, scalars >= 0, time derivatives, letters constant in time, parameters (letters
-    that no choice of a gain changes), moments E[a b'], random letters (all of mean zero).
+    that no choice of a gain changes), moments E[a b'], random letters of mean zero, and signals with another mean,
+    whose expectation has no rule.
     """
 
     alphabet: Alphabet
@@ -76,6 +89,7 @@ class Context:
     parameters: frozenset[str] = frozenset()
     moments: Mapping[tuple[str, str], Poly] = field(default_factory=dict[tuple[str, str], Poly])
     random: frozenset[str] = frozenset()
+    uncentred: frozenset[str] = frozenset()
 
     def fact(self, name: str, *kinds: str) -> Fact:
         """Return a fact of one of the given kinds, or raise Rejected."""
@@ -130,6 +144,44 @@ def replay_comparison(proof: Comparison, claim: Poly, context: Context) -> str:
     return "psd"
 
 
+@dataclass(frozen=True)
+class Uniqueness:
+    """f = g because D = f - g solves dD/dt = M D + D N and D(t0) = 0: a linear equation has one solution."""
+
+    claim: Poly
+    left: Poly
+    right: Poly
+    rate_terms: tuple[Term, ...]
+    initial_terms: tuple[Term, ...]
+
+
+def replay_uniqueness(proof: Uniqueness, claim: Poly, context: Context) -> None:
+    """Accept f - g = 0 by uniqueness of the solution of a linear differential equation, or raise Rejected."""
+    if proof.claim != claim:
+        raise Rejected("the certificate belongs to another claim")
+    for equation, terms in zip(
+        (rate_equation(claim, proof.left, proof.right, context), at_start(claim, context)),
+        (proof.rate_terms, proof.initial_terms),
+        strict=True,
+    ):
+        replay(Certificate(equation, terms), equation, context.relations, context.alphabet)
+
+
+def rate_equation(d: Poly, left: Poly, right: Poly, context: Context) -> Poly:
+    """Return dD/dt - M D - D N."""
+    return differentiate(d, context) - left * d - d * right
+
+
+def at_start(poly: Poly, context: Context) -> Poly:
+    """Return the value at t = t0: integrals from t0 to t vanish."""
+    kept = {k: c for k, c in poly.terms.items() if not any(s.startswith("∫") for s in k[0])}
+    for _, word in kept:
+        for a in word:
+            if not parts(a)[2] and parts(a)[0] not in context.constants:
+                raise Rejected(f"the value of {a} at t0 is not declared")
+    return at_time(Poly(kept, poly.rows, poly.cols), "t", "t0")
+
+
 # ------------------------------------------------------------------------------------------------ operators
 def substitute(poly: Poly, images: Mapping[str, Poly], alphabet: Alphabet) -> Poly:
     """Replace letters by polynomials of the same type (transposes follow)."""
@@ -146,20 +198,6 @@ def substitute(poly: Poly, images: Mapping[str, Poly], alphabet: Alphabet) -> Po
             product = product * image
         total = total + product
     return total
-
-
-def at_time(poly: Poly, variable: str, value: str) -> Poly:
-    """Set a time variable: f(..., variable, ...) becomes f(..., value, ...) in letters and deltas."""
-
-    def move(name: str) -> str:
-        head, sign, tail = name[:-1].partition("(") if name.startswith("δ") else name.partition("@")
-        return head + sign + ",".join(value if a == variable else a for a in tail.split(",")) + ")" * (sign == "(")
-
-    terms: dict[Key, Fraction] = {}
-    for (m, w), c in poly.terms.items():
-        key = tuple(sorted(map(move, m))), tuple(map(move, w))
-        terms[key] = terms.get(key, Fraction(0)) + c
-    return Poly(terms, poly.rows, poly.cols)
 
 
 def differentiate(poly: Poly, context: Context) -> Poly:
@@ -187,6 +225,8 @@ def expect(poly: Poly, context: Context) -> Poly:
     """Return E[.]: linear, deterministic factors leave, E[a b'] from the moments; every random letter has mean zero."""
     total = Poly({}, poly.rows, poly.cols)
     for (m, w), c in poly.terms.items():
+        if any(parts(a)[0] in context.uncentred for a in w):
+            raise Rejected(f"a signal in {' '.join(w)} has no declared mean")
         where = [i for i, a in enumerate(w) if parts(a)[0] in context.random]
         if len(where) == 1:
             continue

@@ -85,7 +85,7 @@ class Symbol(Term):
     def at(self, *args: str) -> Symbol:
         """Return the symbol at the given times, e.g. Phi.at("t", "τ")."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
-        return Symbol(**{**values, "args": args})
+        return Symbol(**{**values, "args": args, "show_args": None})
 
     @property
     def letter(self) -> str:
@@ -331,7 +331,7 @@ def _lower_product(factors: tuple[Term, ...], reading: Reading) -> Grid:
             case Symbol(scalar=True):
                 scalars.append(factor.name)
             case Delta(one, two):
-                scalars.append(f"δ({one},{two})")
+                scalars.append("δ({},{})".format(*sorted((one, two), key=lambda a: (a != "t", a))))
             case _:
                 matrices.append(lower(factor, reading))
     if not matrices:

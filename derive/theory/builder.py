@@ -1,6 +1,6 @@
 """Write a lecture: state what follows, and let the prover find the certificate that the kernel replays.
 
-Nothing enters a lecture unproved: a step whose certificate is not found raises ``NotDerived`` when the lecture is built.
+Nothing enters a lecture unproved: a step without a certificate raises ``NotDerived`` when the lecture is built.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
-from derive.context import Theory, names_of
+from derive.context import Declared, Theory, names_of
 from derive.derivation import (
     Derived,
     Erratum,
@@ -33,7 +33,7 @@ from derive.derivation import (
 from derive.kernel import Poly, Rejected, identity
 from derive.kernel import Term as Addend
 from derive.matrix.search import prove
-from derive.rules import Comparison, Grid, Positivity, Square, differentiate
+from derive.rules import Comparison, Grid, Positivity, Square, Uniqueness, at_start, differentiate, rate_equation
 from derive.terms import Equation, Reading, Term, lower
 
 
@@ -48,6 +48,10 @@ class SquareOf:
     factor: Term
     fact: str
     coefficient: Fraction = Fraction(1)
+
+
+def _text(reason: str | Text) -> Text:
+    return (reason,) if isinstance(reason, str) else reason
 
 
 class Builder:
@@ -72,6 +76,8 @@ class Builder:
         rows: list[GivenRow] = []
         for i, name in enumerate(names):
             item = self.theory.declared[name]
+            if not isinstance(item, Declared):
+                raise NotDerived(f"{self.key}: {name!r} is not an equation that can be displayed")
             number = numbers[i] if i < len(numbers) else ""
             reason = (reasons[i],) if i < len(reasons) and reasons[i] else (item.text,) if item.text else ()
             rows.append(GivenRow(item.statement, name, item.kind, number, source if number else "", reason))
@@ -135,6 +141,10 @@ class Builder:
         self.items.append(Derived((step,)))
         return step
 
+    def _display(self, step: Step) -> Step:
+        self.items.append(Derived((self.record(step),)))
+        return step
+
     def equation(
         self,
         name: str,
@@ -152,8 +162,7 @@ class Builder:
         except Rejected as error:
             raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
         proofs = tuple(replace(c, terms=self.prove(c.claim, using, c.trace, name)) for c in wanted)
-        text = (reason,) if isinstance(reason, str) else reason
-        step = Step(name, statement, rule, text, Proof(proofs), tuple(using), number, source, lemma)
+        step = Step(name, statement, rule, _text(reason), Proof(proofs), tuple(using), number, source, lemma)
         return self.record(step)
 
     def positive(
@@ -169,7 +178,6 @@ class Builder:
         source: str = "",
     ) -> Step:
         """Prove lhs ⪰ rhs (or ≻: ``strict`` is the index of the square and the right inverse of its factor)."""
-        context = self.reading.context
         claim = order_claim(statement, self.reading)
         made = [Square(s.coefficient, (), lower(s.factor, self.reading), s.fact) for s in squares]
         terms = tuple(tuple(self.prove(rest, using, label=name) for rest in row) for row in self._rests(claim, made))
@@ -180,12 +188,18 @@ class Builder:
             proof = replace(
                 proof, strict=strict[0], inverse=inverse, inverse_terms=self.prove(injective, using, label=name)
             )
-        text = (reason,) if isinstance(reason, str) else reason
         step = Step(
-            name, statement, "positivity", text, Proof(positivity=proof), tuple(using), number, source, lemma=True
+            name,
+            statement,
+            "positivity",
+            _text(reason),
+            Proof(positivity=proof),
+            tuple(using),
+            number,
+            source,
+            lemma=True,
         )
         self.items.append(Derived((self.record(step),)))
-        assert context is not None
         return step
 
     def _rests(self, claim: Grid, squares: Sequence[Square]) -> Grid:
@@ -217,7 +231,7 @@ class Builder:
         number: str = "",
         source: str = "",
     ) -> Step:
-        """Prove lhs ⪰ rhs by comparison: a Lyapunov or Stein equation with a stable matrix, or from the initial time."""
+        """Prove lhs ⪰ rhs by comparison: Lyapunov or Stein equation, or from the initial time on."""
         context, flip = self.reading.context, self.reading.context.alphabet.transpose
         d, m = order_claim(statement, self.reading)[0][0], lower(matrix, self.reading)[0][0]
         f = context.fact(forcing, "psd", "pd").matrix[0][0]
@@ -225,12 +239,34 @@ class Builder:
         if kind == "transient":
             equation = equation - differentiate(d, context)
         proof = Comparison(kind, d, m, stable, forcing, self.prove(equation, using, label=name))
-        text = (reason,) if isinstance(reason, str) else reason
         step = Step(
-            name, statement, "comparison", text, Proof(comparison=proof), tuple(using), number, source, lemma=True
+            name,
+            statement,
+            "comparison",
+            _text(reason),
+            Proof(comparison=proof),
+            tuple(using),
+            number,
+            source,
+            lemma=True,
         )
         self.items.append(Derived((self.record(step),)))
         return step
+
+    def unique(
+        self, name: str, statement: Equation, reason: str | Text, left: Term, right: Term, using: Sequence[str] = (),
+        *, number: str = "", source: str = "",
+    ) -> Step:  # fmt: skip
+        """Prove f = g because both solve dX/dt = M X + X N + (the same) and agree at t0."""
+        context = self.reading.context
+        claim = order_claim(statement, self.reading)[0][0]
+        m, n = lower(left, self.reading)[0][0], lower(right, self.reading)[0][0]
+        rate = self.prove(rate_equation(claim, m, n, context), using, label=name)
+        initial = self.prove(at_start(claim, context), using, label=name)
+        proof = Proof(uniqueness=Uniqueness(claim, m, n, rate, initial))
+        return self._display(
+            Step(name, statement, "uniqueness", _text(reason), proof, tuple(using), number, source, True)
+        )
 
     def lecture(self) -> Lecture:
         """Close the lecture; every declaration of the theory must have come into force."""
@@ -267,11 +303,12 @@ class Chain:
         self.end = after
         return self
 
-    def close(self, name: str, reason: str | Text = "the ends of this chain", *, number: str = "", source: str = "") -> Step:  # fmt: skip
+    def close(self, name: str, *, number: str = "", source: str = "", reason: str | Text = "ends of the chain") -> Step:
         """State first = last as a lemma that later steps may use, and display the chain."""
         statement = Equation(self.start, "=", self.end)
-        text = (reason,) if isinstance(reason, str) else reason
         proof = Proof(links=tuple(s.name for s in self.links))
-        lemma = self.builder.record(Step(name, statement, "chain", text, proof, (), number, source, lemma=True))
+        lemma = self.builder.record(
+            Step(name, statement, "chain", _text(reason), proof, (), number, source, lemma=True)
+        )
         self.builder.items.append(Derived((*self.links, lemma)))
         return lemma
