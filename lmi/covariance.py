@@ -1,0 +1,153 @@
+"""The optimal error covariance of a plant from any of the convex programs, in coordinates that suit the solver."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.numeric.plant import Plant
+from lmi.programs.optimal_covariance import optimal_covariance
+from lmi.programs.program import Program
+from lmi.residual import newton_step, riccati_residual
+from lmi.scaling import Scaling, balanced, recentred, scaled_plant
+from lmi.solve import TO_THE_LAST_DIGIT, Accuracy, Outcome, Status, solve_program
+
+__all__ = ["Solution", "solve_covariance"]
+
+Matrix = NDArray[np.floating[Any]]
+
+GOOD = 1e-8
+"""Relative Newton step below which no further attempt is made to improve an answer."""
+
+ROUGH = 0.5
+"""Relative Newton step below which an answer is good enough to choose better coordinates by."""
+
+ROUGHLY = Accuracy(1e-6, 1e-7)
+"""Enough to choose coordinates by."""
+
+ATTEMPTS = (TO_THE_LAST_DIGIT, Accuracy(1e-12, 1e-7), Accuracy(1e-9, 1e-6))
+"""Tried in this order until an answer is `GOOD`: to the last digit, then sturdier."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """An error covariance from a convex program, in the plant's units.
+
+    Attributes:
+        outcome: of the call of the solver that gave it, or of the last one when none did.
+        P: error covariance (n, n), or None.
+        gain: observer gain (n, l), or None.
+        refined: the covariance one Newton step from P (n, n), or None; |refined - P| estimates the error of P.
+        residual: of the Riccati equation at P, relative, in the coordinates of the solver.
+        attempts: calls of the solver in the coordinates chosen.
+        seconds: in all.
+    """
+
+    outcome: Outcome
+    P: Matrix | None
+    gain: Matrix | None
+    refined: Matrix | None
+    residual: float
+    attempts: int
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Answer:
+    """An answer in the coordinates in which it was computed.
+
+    Attributes:
+        step: norm of one Newton step from P, in the balanced coordinates common to all attempts.
+        size: norm of P there.
+    """
+
+    outcome: Outcome
+    scaling: Scaling
+    P: Matrix
+    gain: Matrix
+    refined: Matrix | None
+    residual: float
+    step: float
+    size: float
+
+
+def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solution:
+    """Solve a program for a plant's optimal error covariance, in coordinates that suit it.
+
+    The plant is balanced; a rough answer of the cheapest program gives coordinates in which the covariance is near the
+    identity; there the program is solved, and again with sturdier settings if need be. The answer with the smallest
+    Newton step is returned. The Riccati equation is solved nowhere; it only judges.
+
+    Args:
+        plant: V > 0, (A, C) detectable.
+        build: states the program for a plant, for example `lmi.programs.h2.h2`.
+
+    Returns:
+        The solution, its residuals recomputed from the numbers returned.
+
+    Example:
+        >>> from derive.numeric.plant import example_plant
+        >>> from lmi.programs.h2 import h2
+        >>> solution = solve_covariance(example_plant(), h2)
+        >>> solution.status.value, solution.residual < 1e-6
+        ('solved', True)
+    """
+    start = perf_counter()
+    common = balanced(plant)
+    coordinates = _coordinates(plant, common)
+    best: _Answer | None = None
+    outcome, attempts = Outcome(Status.FAILED, "not called"), 0
+    for accuracy in ATTEMPTS:
+        attempts += 1
+        outcome, answer = _attempt(plant, build, accuracy, coordinates, common)
+        if answer is not None and (best is None or answer.step < best.step):
+            best = answer
+        if best is not None and best.step <= GOOD * best.size:
+            break
+    return _solution(best, outcome, attempts, perf_counter() - start)
+
+
+def _coordinates(plant: Plant, common: Scaling) -> Scaling:
+    """Return coordinates in which a rough largest covariance is the identity, or the balanced ones if that failed."""
+    _, rough = _attempt(plant, optimal_covariance, ROUGHLY, common, common)
+    if rough is None or rough.step > ROUGH * rough.size:
+        return common
+    return recentred(common, rough.P, rough.step)
+
+
+def _attempt(
+    plant: Plant, build: Callable[[Plant], Program], accuracy: Accuracy, scaling: Scaling, common: Scaling
+) -> tuple[Outcome, _Answer | None]:
+    """Solve once in given coordinates; the answer is None when the solver left no numbers, or X is singular."""
+    scaled = scaled_plant(plant, scaling)
+    program = build(scaled)
+    outcome = solve_program(program, accuracy)
+    if outcome.status not in (Status.SOLVED, Status.INACCURATE):
+        return outcome, None
+    try:
+        P, gain = program.answer()
+    except np.linalg.LinAlgError:
+        return outcome, None
+    refined = newton_step(scaled, P)
+    back = np.linalg.solve(common.T, scaling.T)
+    step = np.inf if refined is None else float(np.linalg.norm(back @ (refined - P) @ back.T))
+    size = float(np.linalg.norm(back @ P @ back.T))
+    return outcome, _Answer(outcome, scaling, P, gain, refined, riccati_residual(scaled, P), step, size)
+
+
+def _solution(best: _Answer | None, last: Outcome, attempts: int, seconds: float) -> Solution:
+    if best is None:
+        return Solution(last, None, None, None, np.inf, attempts, seconds)
+    scaling = best.scaling
+    return Solution(
+        outcome=best.outcome,
+        P=scaling.covariance(best.P),
+        gain=scaling.gain(best.gain),
+        refined=None if best.refined is None else scaling.covariance(best.refined),
+        residual=best.residual,
+        attempts=attempts,
+        seconds=seconds,
+    )
