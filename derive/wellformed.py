@@ -1,0 +1,118 @@
+"""What may stand in a file: JSON of the right shape, names of the installed theory, statements of bounded size.
+
+Every check raises InputError with one line. Standard library only.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from functools import reduce
+from operator import mul
+from typing import Any
+
+from derive import kernel
+from derive.context import Theory
+from derive.errors import InputError
+from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term
+
+EXPANSION = 20_000  # products that one statement may expand to
+TIME = re.compile(r"[A-Za-zα-ω0-9_+-]{1,12}")
+
+
+def a_list(data: Any, name: str) -> list[Any]:
+    """Return data if it is a list."""
+    if not isinstance(data, list):
+        raise InputError(f"{name}: expected a list, got {shown(data)}")
+    return data
+
+
+def a_dict(data: Any, name: str, keys: Iterable[str] | None = None) -> dict[str, Any]:
+    """Return data if it is an object (with exactly these keys)."""
+    if not isinstance(data, dict):
+        raise InputError(f"{name}: expected an object, got {shown(data)}")
+    if keys is not None and set(data) != set(keys):
+        wrong = sorted(set(data) ^ set(keys))[0]
+        raise InputError(f"{name}: expected the keys {', '.join(keys)}, got one too many or few: {shown(wrong)}")
+    return data
+
+
+def shown(value: Any) -> str:
+    """Return a short text of a value for a message."""
+    if isinstance(value, (list, dict)):
+        return f"{'a list' if isinstance(value, list) else 'an object'} of {len(value)}"
+    return ascii(value) if isinstance(value, (bool, type(None))) else repr(str(value)[:40])
+
+
+def check_time(theory: Theory, text: str) -> None:
+    """Check the name of a time."""
+    if not TIME.fullmatch(text):
+        raise InputError(f"{shown(text)}: expected a time such as t or τ")
+
+
+def check_size(theory: Theory, text: str) -> None:
+    """Check the name of a dimension."""
+    if text and text not in theory.sizes():
+        raise InputError(f"{shown(text)}: not a dimension of the theory {theory.key}")
+
+
+def check_letter(theory: Theory, text: str) -> None:
+    """Check a letter as the kernel writes it: name, one prime at most and none on a symmetric letter, times."""
+    name, primed, times = kernel.parts(text)
+    symbol = theory.symbols.get(name)
+    written = name + "'" * primed + ("@" + ",".join(times) if times else "")
+    if symbol is None or symbol.scalar or (primed and symbol.symmetric) or written != text:
+        raise InputError(f"{shown(text)}: not a letter of the theory {theory.key}")
+    for time in times:
+        check_time(theory, time)
+
+
+def check_scalar(theory: Theory, text: str) -> None:
+    """Check a central scalar: a symbol of the theory, ∫τ or δ(τ,σ)."""
+    delta = re.fullmatch(r"δ\(([^,]*),([^,]*)\)", text)
+    symbol = theory.symbols.get(text)
+    if delta or text.startswith("∫"):
+        for time in delta.groups() if delta else (text[1:],):
+            check_time(theory, time)
+    elif symbol is None or not symbol.scalar:
+        raise InputError(f"{shown(text)}: not a scalar of the theory {theory.key}")
+
+
+def check_map(theory: Theory, text: str) -> None:
+    """Check the name of a map of letters."""
+    if text not in theory.maps:
+        raise InputError(f"{shown(text)}: not a map of the theory {theory.key}")
+
+
+CHECKS: Mapping[str, Callable[[Theory, str], None]] = {
+    **dict.fromkeys(("word", "left", "right"), check_letter),
+    **dict.fromkeys(("size", "rows", "cols"), check_size),
+    **dict.fromkeys(("variable", "one", "two"), check_time),
+    "scalars": check_scalar,
+    "map": check_map,
+}
+
+
+def expansion(term: Term, theory: Theory) -> tuple[int, int]:
+    """Bound the number of products and the longest product that a term expands to.
+
+    Raises:
+        InputError: more than the kernel is asked to expand in one statement.
+    """
+    below = [expansion(child, theory) for child in term.children()]
+    count, length = sum(c for c, _ in below) or 1, max((n for _, n in below), default=1)
+    match term:
+        case Product():
+            count, length = reduce(mul, (c for c, _ in below), 1), sum(n for _, n in below)
+        case Inverse():
+            count, length = 1, 1
+        case Dot():
+            count, length = count * length * 8, length + 8
+        case Image(name):
+            widest = max((expansion(image, theory)[0] for image in theory.maps[name].values()), default=1)
+            count = count * min(widest, EXPANSION) ** min(length, 20)
+        case Sum() | Block() | _:
+            pass
+    if count > EXPANSION or length > EXPANSION:
+        raise InputError(f"expected a statement of at most {EXPANSION} products, got more; write it in smaller steps")
+    return count, length
