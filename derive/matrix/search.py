@@ -60,12 +60,15 @@ def prove(
     goal: Encoded = codec.encode(claim)
     completion = Completion(codec, max_degree, gaps=_gaps(goal, relations, codec))
     origin = _declare(completion, relations)
-    rest, steps = goal, list[Step]()
+    sizes = _by_size(goal, claim.rows, codec) if trace else {claim.rows: goal}
+    steps: list[Step] = []
     while True:
-        rest, used = _reduce(completion, rest, claim.rows, trace)
-        steps += used
+        for size, poly in sizes.items():
+            sizes[size], used = completion.reduce(poly, size)
+            steps += used
+        rest, more = _cyclic(completion, sizes) if trace else (sizes[claim.rows], [])
         if not rest:
-            return Certificate(claim, _terms(completion, steps, origin), trace)
+            return Certificate(claim, _terms(completion, steps + more, origin), trace)
         grown = False
         while not grown:
             grown = completion.resolve()
@@ -107,13 +110,23 @@ def _terms(completion: Completion, steps: list[Step], origin: Mapping[int, tuple
     )
 
 
-def _reduce(completion: Completion, poly: Encoded, dimension: str, trace: bool) -> tuple[Encoded, list[Step]]:
-    """Return what the rules leave of a claim, and the steps that were subtracted."""
-    if not trace:
-        return completion.reduce(poly, dimension)
-    steps: list[Step] = []
+# ------------------------------------------------------------------------------------------------ under a trace
+def _by_size(poly: Encoded, dimension: str, codec: Codec) -> dict[str, Encoded]:
+    """Sort the words under a trace by their number of rows; the identity has that of the claim."""
+    sizes: dict[str, Encoded] = {}
+    for (m, w), c in poly.items():
+        sizes.setdefault(codec.rows(w) if w else dimension, Encoded())[m, w] = c
+    return sizes
+
+
+def _cyclic(completion: Completion, sizes: Mapping[str, Encoded]) -> tuple[Encoded, list[Step]]:
+    """Return what is left of a trace when words may also be rotated and transposed, and the steps subtracted."""
+    poly, steps = Encoded(), list[Step]()
+    for size, words in sizes.items():
+        for (m, w), c in words.items():
+            accumulate(poly, (m, w or completion.codec.letter(TRACE + size)), c)
     for _ in range(ROUNDS):
-        turned, used = _reduce_cyclic(completion, poly, dimension)
+        turned, used = _turn(completion, poly)
         steps += used
         if turned == poly:
             break
@@ -121,18 +134,17 @@ def _reduce(completion: Completion, poly: Encoded, dimension: str, trace: bool) 
     return poly, steps
 
 
-def _reduce_cyclic(completion: Completion, poly: Encoded, dimension: str) -> tuple[Encoded, list[Step]]:
-    """Reduce each word after rotating or transposing it so that a rule applies, if one does; tr I is a letter."""
+def _turn(completion: Completion, poly: Encoded) -> tuple[Encoded, list[Step]]:
+    """Reduce each word after a rotation or transposition to which a rule applies; else take the least of them."""
     codec, out, steps = completion.codec, Encoded(), list[Step]()
     for (m, w), c in poly.items():
-        if w and codec.names[w[0]].startswith(TRACE):
+        if codec.names[w[0]].startswith(TRACE):
             accumulate(out, (m, w), c)
             continue
-        turns = sorted({v[i:] + v[:i] for v in (w, codec.flip(w)) for i in range(len(w))}) or [w]
-        start = next((v for v in turns if v and completion.find(m, v, codec.rows(v))), turns[0])
-        size = codec.rows(start) if start else dimension
-        rest, used = completion.reduce({(m, start): c}, size)
+        turns = sorted({v[i:] + v[:i] for v in (w, codec.flip(w)) for i in range(len(w))})
+        start = next((v for v in turns if completion.find(m, v, codec.rows(v))), turns[0])
+        rest, used = completion.reduce({(m, start): c}, codec.rows(start))
         steps += used
         for (n, v), d in rest.items():
-            accumulate(out, (n, v or codec.letter(TRACE + size)), d)
+            accumulate(out, (n, v or codec.letter(TRACE + codec.rows(start))), d)
     return out, steps
