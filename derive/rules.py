@@ -10,19 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from derive.kernel import (
-    Alphabet,
-    Certificate,
-    Poly,
-    Rejected,
-    Scalars,
-    Term,
-    at_time,
-    identity,
-    parts,
-    replay,
-    times,
-)
+from derive.kernel import Alphabet, Certificate, Poly, Rejected, Scalars, Term, at_time, identity, parts, replay, times
 
 Grid = tuple[tuple[Poly, ...], ...]
 
@@ -265,11 +253,13 @@ def sift(poly: Poly) -> Poly:
 
 def variation(poly: Poly, letter: str, change: str, context: Context) -> Poly:
     """Return the directional derivative when ``letter`` moves along ``change``, a letter that poly does not contain."""
-    if any(parts(change)[0] == parts(a)[0] for _, w in poly.terms for a in w):
-        raise Rejected(f"{change} is not a free direction")
-    for a in (a for _, w in poly.terms for a in w):
-        if parts(a)[0] != parts(letter)[0] and parts(a)[0] not in context.parameters:
-            raise Rejected(f"{a} may depend on {letter}")
-    moved = Poly({((), (change,)): 1}, *context.alphabet.shape(change))
-    plain = Context(context.alphabet, derivatives={letter: moved}, constants=context.parameters - {parts(letter)[0]})
-    return differentiate(poly, plain)
+    alphabet = context.alphabet
+    images = {letter: change, alphabet.flip(letter): alphabet.flip(change)}
+    total = Poly({}, poly.rows, poly.cols)
+    for (m, w), c in poly.terms.items():
+        for i, a in enumerate(w):
+            if a in images:
+                total = total + Poly({(m, (*w[:i], images[a], *w[i + 1 :])): c}, poly.rows, poly.cols)
+            elif parts(a)[0] not in context.parameters or parts(a)[0] in (parts(letter)[0], parts(change)[0]):
+                raise Rejected(f"{a} may depend on {letter}")
+    return total

@@ -1,1 +1,48 @@
 """Lectures: each displayed equation derived, with its certificate."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from derive.errors import InputError
+
+if TYPE_CHECKING:
+    from derive.context import Theory
+    from derive.derivation import Lecture
+
+__all__ = ["LECTURES", "THEORIES", "lecture", "theory"]
+
+LECTURES = {
+    "observer": "derive.theory.observer",
+    "covariance": "derive.theory.covariance",
+    "luenberger": "derive.theory.luenberger",
+    "kalman-bucy": "derive.theory.kalman_bucy",
+    "duality": "derive.theory.duality",
+}
+THEORIES = {
+    "observer-ct": "derive.theory.observer",
+    "covariance-ct": "derive.theory.covariance",
+    "luenberger-dt": "derive.theory.luenberger",
+    "kalman-bucy": "derive.theory.kalman_bucy",
+    "duality": "derive.theory.duality",
+}
+
+
+@cache
+def lecture(key: str) -> Lecture:
+    """Return a lecture by its key, every step proved while it is built."""
+    return import_module(_find(key, LECTURES, "lecture")).lecture()
+
+
+@cache
+def theory(key: str) -> Theory:
+    """Return an installed theory by its key."""
+    return import_module(_find(key, THEORIES, "theory")).theory()
+
+
+def _find(key: str, table: dict[str, str], kind: str) -> str:
+    if key not in table:
+        raise InputError(f"{kind} {key!r}: unknown; known are {', '.join(table)}")
+    return table[key]

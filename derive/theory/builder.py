@@ -30,7 +30,7 @@ from derive.derivation import (
     learn,
     order_claim,
 )
-from derive.kernel import Poly, Rejected, identity
+from derive.kernel import Poly, Rejected, identity, sample
 from derive.kernel import Term as Addend
 from derive.matrix.search import prove
 from derive.rules import Comparison, Grid, Positivity, Square, Uniqueness, at_start, differentiate, rate_equation
@@ -107,7 +107,10 @@ class Builder:
         """Find the addends of a certificate from the named relations and lemmas."""
         relations = self.reading.context.relations
         allowed = {r: relations[r] for name in using for r in names_of(name, relations)}
-        found = prove(claim, allowed, self.reading.context.alphabet, trace=trace)
+        alphabet = self.reading.context.alphabet
+        found = prove(claim, allowed, alphabet, trace=trace)
+        if found is None and sample(claim) != claim:
+            found = prove(sample(claim), allowed, alphabet, trace=trace)
         if found is None:
             raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(using) or 'nothing'}")
         return found.terms
@@ -254,9 +257,17 @@ class Builder:
         return step
 
     def unique(
-        self, name: str, statement: Equation, reason: str | Text, left: Term, right: Term, using: Sequence[str] = (),
-        *, number: str = "", source: str = "",
-    ) -> Step:  # fmt: skip
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        left: Term,
+        right: Term,
+        using: Sequence[str] = (),
+        *,
+        number: str = "",
+        source: str = "",
+    ) -> Step:
         """Prove f = g because both solve dX/dt = M X + X N + (the same) and agree at t0."""
         context = self.reading.context
         claim = order_claim(statement, self.reading)[0][0]
