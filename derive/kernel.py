@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 
 Word = tuple[str, ...]
@@ -42,7 +43,9 @@ class Poly:
     __slots__ = ("cols", "rows", "terms")
 
     def __init__(self, terms: Mapping[Key, Fraction | int], rows: str, cols: str):
-        self.terms: dict[Key, Fraction] = {k: Fraction(c) for k, c in terms.items() if c}
+        self.terms: dict[Key, Fraction] = {
+            k: c if isinstance(c, Fraction) else Fraction(c) for k, c in terms.items() if c
+        }
         self.rows, self.cols = rows, cols
 
     def __eq__(self, other: object) -> bool:
@@ -78,15 +81,17 @@ class Poly:
         return Poly(terms, self.rows or other.rows, other.cols or self.cols)
 
     def scale(self, factor: Fraction | int, scalars: Scalars = ()) -> Poly:
-        """Multiply by a rational number and central scalars."""
+        """Multiply by a rational number and central scalars; ∫τ integrates over τ."""
+        if any(bound(m) & times_of(scalars, ()) for m, _ in self.terms):
+            raise Rejected(f"a factor of {scalars} would be captured by an integral")
         return Poly({(times(scalars, m), w): c * factor for (m, w), c in self.terms.items()}, self.rows, self.cols)
 
 
 def times(m: Scalars, n: Scalars) -> Scalars:
-    """Multiply two monomials of central scalars; a variable of integration is bound once."""
+    """Multiply two monomials of central scalars; a variable of integration is bound once, and is none of the limits."""
     product = tuple(sorted(m + n)) if m and n else m or n
-    if any(a == b and a.startswith("∫") for a, b in pairwise(product)):
-        raise Rejected(f"a variable of integration is bound twice in {product}")
+    if any(a == b and a.startswith("∫") for a, b in pairwise(product)) or {"∫t", "∫t0"}.intersection(product):
+        raise Rejected(f"a variable of integration is bound twice, or a limit, in {product}")
     return product
 
 
@@ -106,6 +111,7 @@ def identity(dimension: str) -> Poly:
     return Poly({((), ()): 1}, dimension, dimension)
 
 
+@cache
 def parts(letter: str) -> tuple[str, bool, tuple[str, ...]]:
     """Split a letter into base name, transposed or not, and time arguments."""
     head, _, arguments = letter.partition("@")
@@ -122,7 +128,7 @@ class Alphabet:
     def shape(self, letter: str) -> tuple[str, str]:
         """Return (rows, cols) of a letter or transposed letter."""
         name, primed, _ = parts(letter)
-        if name not in self.letters:
+        if name not in self.letters or letter.partition("@")[0] not in (name, name + "'"):
             raise Rejected(f"unknown letter {letter}")
         found = self.letters[name]
         return (found.cols, found.rows) if primed else (found.rows, found.cols)
@@ -152,18 +158,18 @@ class Alphabet:
     def check(self, poly: Poly, trace: bool = False) -> None:
         """Reject a polynomial with an unknown symbol or a word of another type (under a trace: a word not square)."""
         for m, w in poly.terms:
-            unknown = [s for s in m if s not in self.scalars and s[0] not in "∫δ"]
+            unknown = [s for s in m if s not in self.scalars and s[:1] not in ("∫", "δ")]
             rows, cols = self.word_shape(w, poly.rows)
             wrong = rows != cols if trace else (rows, cols) != (poly.rows, poly.cols)
-            if unknown or wrong:
+            if unknown or wrong or times(tuple(sorted(m)), ()) != m:
                 raise Rejected(f"ill-typed term {m} {w}: {rows} x {cols} in {poly.rows} x {poly.cols}, or {unknown}")
 
     def cyclic(self, poly: Poly) -> dict[Key, Fraction]:
-        """Return tr(poly) with each word replaced by the least of its rotations and their transposes."""
+        """Return tr(poly), each word replaced by the least of its rotations and their transposes; tr I is a letter."""
         out: dict[Key, Fraction] = {}
         for (m, w), c in poly.terms.items():
             turned = tuple(self.flip(a) for a in reversed(w))
-            least = min((v[i:] + v[:i] for v in (w, turned) for i in range(len(w))), default=(f"I{poly.rows}",))
+            least = min((v[i:] + v[:i] for v in (w, turned) for i in range(len(w))), default=(f"@{poly.rows}",))
             out[m, least] = out.get((m, least), Fraction(0)) + c
         return {k: c for k, c in out.items() if c}
 
@@ -184,6 +190,8 @@ def at_time(poly: Poly, variable: str, value: str) -> Poly:
 
 def sample(poly: Poly) -> Poly:
     """Write f(τ) δ(t,τ) as f(t) δ(t,τ), the sampling property of the Dirac delta."""
+    if not any(s.startswith("δ") for m, _ in poly.terms for s in m):
+        return poly
     total = Poly({}, poly.rows, poly.cols)
     for (m, w), c in poly.terms.items():
         term = Poly({((), w): c}, poly.rows, poly.cols)
@@ -217,23 +225,26 @@ class Certificate:
 
 def replay(certificate: Certificate, claim: Poly, relations: Mapping[str, Poly], alphabet: Alphabet) -> None:
     """Accept f = sum c_i l_i r_i s_i by expansion, or raise Rejected."""
+
+    def normal(poly: Poly) -> Mapping[Key, Fraction]:
+        alphabet.check(poly, certificate.trace)
+        return alphabet.cyclic(sample(poly)) if certificate.trace else sample(poly).terms
+
     if certificate.claim != claim:
         raise Rejected("the certificate belongs to another claim")
-    alphabet.check(claim, certificate.trace)
-    rest = dict(claim.terms)
+    rest = dict(normal(claim))
     for t in certificate.terms:
         if t.relation not in relations:
             raise Rejected(f"undeclared relation {t.relation}")
         r = alphabet.transpose(relations[t.relation]) if t.transposed else relations[t.relation]
+        if ANY in (r.rows, r.cols) and (r.rows != r.cols or any(w for _, w in r.terms)):
+            raise Rejected(f"the central relation {t.relation} contains letters")
         addend = Poly({((), t.left): t.coefficient}, *alphabet.word_shape(t.left, r.rows or claim.rows))
         addend = addend * r * Poly({((), t.right): 1}, *alphabet.word_shape(t.right, r.cols or addend.cols))
         addend = addend.scale(1, t.scalars)
         if not certificate.trace and (addend.rows, addend.cols) != (claim.rows, claim.cols):
             raise Rejected(f"ill-typed cofactors of {t.relation}: {addend.rows} x {addend.cols}")
-        alphabet.check(addend, certificate.trace)
-        for key, c in addend.terms.items():
+        for key, c in normal(addend).items():
             rest[key] = rest.get(key, Fraction(0)) - c
-    remainder = sample(Poly(rest, claim.rows, claim.cols))
-    left_over = alphabet.cyclic(remainder) if certificate.trace else remainder.terms
-    if left_over:
-        raise Rejected(f"the addends do not make up the claim; {len(left_over)} terms remain")
+    if any(rest.values()):
+        raise Rejected(f"the addends do not make up the claim; {sum(map(bool, rest.values()))} terms remain")

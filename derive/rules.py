@@ -10,7 +10,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from derive.kernel import Alphabet, Certificate, Poly, Rejected, Scalars, Term, at_time, identity, parts, replay, times
+from derive.kernel import (
+    Alphabet,
+    Certificate,
+    Poly,
+    Rejected,
+    Scalars,
+    Term,
+    at_time,
+    bound,
+    identity,
+    parts,
+    replay,
+    times_of,
+)
 
 Grid = tuple[tuple[Poly, ...], ...]
 
@@ -90,19 +103,27 @@ def replay_positivity(proof: Positivity, claim: Grid, context: Context) -> str:
     """Accept G >= 0 ('psd') or G > 0 ('pd'), or raise Rejected."""
     if proof.claim != claim:
         raise Rejected("the certificate belongs to another claim")
+    _check_blocks(claim)
     flip, rest = context.alphabet.transpose, {(i, j): g for i, row in enumerate(claim) for j, g in enumerate(row)}
     for s in proof.squares:
         if s.coefficient < 0 or not context.nonnegative.issuperset(s.scalars):
             raise Rejected(f"the coefficient of {s.fact} may be negative")
         core = context.fact(s.fact, "psd", "pd").matrix
+        _check_blocks(core)
+        if len(s.factor) != len(claim) or any(len(row) != len(core) for row in s.factor):
+            raise Rejected(f"the factor of {s.fact} has another number of blocks")
         for i, j in rest:
             for k, row in enumerate(core):
                 for m, h in enumerate(row):
                     rest[i, j] -= (s.factor[i][k] * h * flip(s.factor[j][m])).scale(s.coefficient, s.scalars)
+    if len(proof.terms) != len(claim) or any(len(row) != len(claim) for row in proof.terms):
+        raise Rejected("every block needs its certificate")
     for (i, j), g in rest.items():
         replay(Certificate(g, proof.terms[i][j]), g, context.relations, context.alphabet)
     if proof.strict is None:
         return "psd"
+    if proof.strict not in range(len(proof.squares)):
+        raise Rejected("there is no such square")
     square = proof.squares[proof.strict]
     if len(claim) != 1 or len(square.factor[0]) != 1 or proof.inverse is None:
         raise Rejected("strictness needs one block and a right inverse of the factor")
@@ -112,6 +133,14 @@ def replay_positivity(proof: Positivity, claim: Grid, context: Context) -> str:
     injective = square.factor[0][0] * proof.inverse - identity(claim[0][0].rows)
     replay(Certificate(injective, proof.inverse_terms), injective, context.relations, context.alphabet)
     return "pd"
+
+
+def _check_blocks(grid: Grid) -> None:
+    """Reject a block matrix that is not square, or whose blocks do not share their types."""
+    sizes = [row[i].rows for i, row in enumerate(grid) if i < len(row)]
+    for i, row in enumerate(grid):
+        if len(row) != len(grid) or any((b.rows, b.cols) != (sizes[i], sizes[j]) for j, b in enumerate(row)):
+            raise Rejected("positivity is about square block matrices")
 
 
 def replay_comparison(proof: Comparison, claim: Poly, context: Context) -> str:
@@ -124,7 +153,10 @@ def replay_comparison(proof: Comparison, claim: Poly, context: Context) -> str:
         (wanted[proof.kind][1],),
     ):
         raise Rejected(f"the fact {proof.stable} is not about this matrix")
-    (f,) = context.fact(proof.forcing, "psd", "pd").matrix[0]
+    forcing = context.fact(proof.forcing, "psd", "pd").matrix
+    if len(forcing) != 1 or len(forcing[0]) != 1:
+        raise Rejected(f"the fact {proof.forcing} has several blocks")
+    f = forcing[0][0]
     equation = m * d * flip(m) - d + f if proof.kind == "stein" else m * d + d * flip(m) + f
     if proof.kind == "transient":
         equation = equation - differentiate(d, context)
@@ -192,9 +224,9 @@ def differentiate(poly: Poly, context: Context) -> Poly:
     """Return d/dt by the product rule and Leibniz's rule (integrals run from t0 to t)."""
     total, alphabet = Poly({}, poly.rows, poly.cols), context.alphabet
     for (m, w), c in poly.terms.items():
-        for bound in [s[1:] for s in m if s.startswith("∫")]:
-            inner = tuple(s for s in m if s != "∫" + bound)
-            total = total + at_time(Poly({(inner, w): c}, poly.rows, poly.cols), bound, "t")
+        for variable in bound(m):
+            inner = tuple(s for s in m if s != "∫" + variable)
+            total = total + at_time(Poly({(inner, w): c}, poly.rows, poly.cols), variable, "t")
         if any(s.startswith("δ") for s in m):
             raise Rejected("a Dirac delta is not differentiated")
         for i, a in enumerate(w):
@@ -204,9 +236,20 @@ def differentiate(poly: Poly, context: Context) -> Poly:
                 rate = alphabet.transpose(context.derivatives[alphabet.flip(a)])
             if rate is None and ("t" in arguments or not (arguments or name in context.constants)):
                 raise Rejected(f"the time derivative of {a} is not declared")
-            for (n, v), d in rate.terms.items() if rate else ():
-                total = total + Poly({(times(m, n), w[:i] + v + w[i + 1 :]): c * d}, poly.rows, poly.cols)
+            if rate:
+                total = total + _insert(Poly({(m, w): c}, poly.rows, poly.cols), i, 1, rate)
     return total
+
+
+def _insert(term: Poly, start: int, length: int, image: Poly) -> Poly:
+    """Put a polynomial in the place of some letters of a single term; reject what an integral would capture."""
+    (((m, w), c),) = term.terms.items()
+    left, replaced, right = w[:start], w[start : start + length], w[start + length :]
+    for n, v in image.terms:
+        if bound(m) & (times_of(n, v) - bound(n) - times_of((), replaced)):
+            raise Rejected(f"an integral would capture what stands for {' '.join(replaced)}")
+    inner = Poly({((), left): c}, term.rows, image.rows) * image * Poly({((), right): 1}, image.cols, term.cols)
+    return inner.scale(1, m)
 
 
 def expect(poly: Poly, context: Context) -> Poly:
@@ -229,8 +272,7 @@ def expect(poly: Poly, context: Context) -> Poly:
             moment = context.alphabet.transpose(context.moments[context.alphabet.flip(b), context.alphabet.flip(a)])
         if moment is None:
             raise Rejected(f"the moment E[{a} {b}] is not declared")
-        for (n, v), d in moment.terms.items():
-            total = total + Poly({(times(m, n), w[: where[0]] + v + w[where[1] + 1 :]): c * d}, poly.rows, poly.cols)
+        total = total + _insert(Poly({(m, w): c}, poly.rows, poly.cols), where[0], 2, moment)
     return sift(total)
 
 
@@ -244,6 +286,8 @@ def sift(poly: Poly) -> Poly:
             if "∫" + two not in m:
                 one, two = two, one
             if "∫" + two in m and ("∫" + one in m or one == "t") and one != two:
+                if m.count(delta) > 1:
+                    raise Rejected(f"the square of {delta} has no meaning")
                 inner = tuple(s for s in m if s not in ("∫" + two, delta))
                 term = sift(at_time(Poly({(inner, w): c / (2 if one == "t" else 1)}, poly.rows, poly.cols), two, one))
                 break
@@ -254,6 +298,11 @@ def sift(poly: Poly) -> Poly:
 def variation(poly: Poly, letter: str, change: str, context: Context) -> Poly:
     """Return the directional derivative when ``letter`` moves along ``change``, a letter that poly does not contain."""
     alphabet = context.alphabet
+    moved, along = (alphabet.letters[parts(a)[0]] for a in (letter, change))
+    if (moved.rows, moved.cols, moved.symmetric) != (along.rows, along.cols, along.symmetric):
+        raise Rejected(f"{change} is not a direction of {letter}")
+    if any(parts(a)[0] == along.name for r in context.relations.values() for _, w in r.terms for a in w):
+        raise Rejected(f"{change} is not a free direction")
     images = {letter: change, alphabet.flip(letter): alphabet.flip(change)}
     total = Poly({}, poly.rows, poly.cols)
     for (m, w), c in poly.terms.items():
