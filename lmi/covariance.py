@@ -11,19 +11,19 @@ from numpy.typing import NDArray
 from derive.numeric.plant import Plant
 from lmi.programs.optimal_covariance import optimal_covariance
 from lmi.programs.program import Program
-from lmi.residual import newton_step, riccati_residual
+from lmi.residual import newton_error, riccati_residual
 from lmi.scaling import Scaling, balanced, recentred, scaled_plant
 from lmi.solve import TO_THE_LAST_DIGIT, Accuracy, Outcome, Status, solve_program
 
-__all__ = ["Solution", "solve_covariance"]
+__all__ = ["Solution", "covariance_error", "solve_covariance"]
 
 Matrix = NDArray[np.floating[Any]]
 
 GOOD = 1e-8
-"""Relative Newton step below which no further attempt is made to improve an answer."""
+"""Relative error below which no further attempt is made to improve an answer."""
 
 ROUGH = 0.5
-"""Relative Newton step below which an answer is good enough to choose better coordinates by."""
+"""Relative error below which an answer is good enough to choose better coordinates by."""
 
 ROUGHLY = Accuracy(1e-6, 1e-7)
 """Enough to choose coordinates by."""
@@ -40,7 +40,7 @@ class Solution:
         outcome: of the call of the solver that gave it, or of the last one when none did.
         P: error covariance (n, n), or None.
         gain: observer gain (n, l), or None.
-        refined: the covariance one Newton step from P (n, n), or None; |refined - P| estimates the error of P.
+        error: what P lacks (n, n), estimated by Newton steps, or None when P belongs to no stabilising gain.
         residual: of the Riccati equation at P, relative, in the coordinates of the solver.
         attempts: calls of the solver in the coordinates chosen.
         seconds: in all.
@@ -49,7 +49,7 @@ class Solution:
     outcome: Outcome
     P: Matrix | None
     gain: Matrix | None
-    refined: Matrix | None
+    error: Matrix | None
     residual: float
     attempts: int
     seconds: float
@@ -60,7 +60,8 @@ class _Answer:
     """An answer in the coordinates in which it was computed.
 
     Attributes:
-        step: norm of one Newton step from P, in the balanced coordinates common to all attempts.
+        error: what P lacks, estimated by Newton steps, or None.
+        distance: norm of that error in the balanced coordinates common to all attempts, infinite without one.
         size: norm of P there.
     """
 
@@ -68,9 +69,9 @@ class _Answer:
     scaling: Scaling
     P: Matrix
     gain: Matrix
-    refined: Matrix | None
+    error: Matrix | None
     residual: float
-    step: float
+    distance: float
     size: float
 
 
@@ -79,7 +80,7 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
 
     The plant is balanced; a rough answer of the cheapest program gives coordinates in which the covariance is near the
     identity; there the program is solved, and again with sturdier settings if need be. The answer with the smallest
-    Newton step is returned. The Riccati equation is solved nowhere; it only judges.
+    estimated error is returned. The Riccati equation is solved nowhere; it only judges.
 
     Args:
         plant: V > 0, (A, C) detectable.
@@ -103,19 +104,27 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
     for accuracy in ATTEMPTS:
         attempts += 1
         outcome, answer = _attempt(plant, build, accuracy, coordinates, common)
-        if answer is not None and (best is None or answer.step < best.step):
+        if answer is not None and (best is None or answer.distance < best.distance):
             best = answer
-        if best is not None and best.step <= GOOD * best.size:
+        if best is not None and best.distance <= GOOD * best.size:
             break
     return _solution(best, outcome, attempts, perf_counter() - start)
+
+
+def covariance_error(plant: Plant, P: Matrix) -> Matrix | None:
+    """Return what P (n, n) lacks to the optimal covariance, by Newton steps in balanced coordinates, or None."""
+    scaling = balanced(plant)
+    P_z = np.linalg.solve(scaling.T, np.linalg.solve(scaling.T, P).T)
+    error = newton_error(scaled_plant(plant, scaling), P_z)
+    return None if error is None else scaling.covariance(error)
 
 
 def _coordinates(plant: Plant, common: Scaling) -> Scaling:
     """Return coordinates in which a rough largest covariance is the identity, or the balanced ones if that failed."""
     _, rough = _attempt(plant, optimal_covariance, ROUGHLY, common, common)
-    if rough is None or rough.step > ROUGH * rough.size:
+    if rough is None or rough.distance > ROUGH * rough.size:
         return common
-    return recentred(common, rough.P, rough.step)
+    return recentred(common, rough.P, rough.distance)
 
 
 def _attempt(
@@ -131,11 +140,11 @@ def _attempt(
         P, gain = program.answer()
     except np.linalg.LinAlgError:
         return outcome, None
-    refined = newton_step(scaled, P)
+    error = newton_error(scaled, P)
     back = np.linalg.solve(common.T, scaling.T)
-    step = np.inf if refined is None else float(np.linalg.norm(back @ (refined - P) @ back.T))
+    distance = np.inf if error is None else float(np.linalg.norm(back @ error @ back.T))
     size = float(np.linalg.norm(back @ P @ back.T))
-    return outcome, _Answer(outcome, scaling, P, gain, refined, riccati_residual(scaled, P), step, size)
+    return outcome, _Answer(outcome, scaling, P, gain, error, riccati_residual(scaled, P), distance, size)
 
 
 def _solution(best: _Answer | None, last: Outcome, attempts: int, seconds: float) -> Solution:
@@ -146,7 +155,7 @@ def _solution(best: _Answer | None, last: Outcome, attempts: int, seconds: float
         outcome=best.outcome,
         P=scaling.covariance(best.P),
         gain=scaling.gain(best.gain),
-        refined=None if best.refined is None else scaling.covariance(best.refined),
+        error=None if best.error is None else scaling.covariance(best.error),
         residual=best.residual,
         attempts=attempts,
         seconds=seconds,

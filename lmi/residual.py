@@ -9,9 +9,12 @@ from derive.numeric.lyapunov import error_covariance
 from derive.numeric.modes import distance_to_stability
 from derive.numeric.plant import Plant
 
-__all__ = ["gain_covariance", "newton_step", "optimal_gain", "riccati_residual", "symmetric_part"]
+__all__ = ["gain_covariance", "newton_error", "optimal_gain", "riccati_residual", "symmetric_part"]
 
 Matrix = NDArray[np.floating[Any]]
+
+SLOWEST = 0.9
+"""Largest ratio of successive Newton steps that is believed; rounding errors have a ratio near 1."""
 
 
 def symmetric_part(P: Any) -> Matrix:
@@ -44,17 +47,28 @@ def gain_covariance(plant: Plant, L: Matrix) -> Matrix | None:
     return error_covariance(plant.A, plant.C, plant.W, plant.V, plant.N, L, plant.time)
 
 
-def newton_step(plant: Plant, P: Matrix) -> Matrix | None:
-    """Return one Newton step for the Riccati equation from P: the covariance of the gain that is optimal for P.
+def newton_error(plant: Plant, P: Matrix) -> Matrix | None:
+    """Estimate the error of P as a solution of the Riccati equation from two Newton steps.
 
-    Near the solution the step is the error of P; at a mode on the boundary it is half the error. None when that gain
-    does not stabilise, so that P is no solution.
+    A Newton step takes P to the covariance N(P) of the gain that is optimal for P. Steps that shrink by the factor r
+    sum to (N(P) - P) / (1 - r). Near a stabilising solution r is almost 0; at a mode on the boundary 1/2 or more.
+
+    Returns:
+        The matrix (n, n) that is missing to the solution, or None when a gain does not stabilise: P is no solution.
 
     Source: D. Kleinman, On an iterative technique for Riccati equation computations, IEEE Trans. Automatic Control
     13(1), 1968; G. Hewer, An iterative technique for the computation of the steady state gains for the discrete optimal
     regulator, ibid. 16(4), 1971.
     """
-    return gain_covariance(plant, optimal_gain(plant, P))
+    first = gain_covariance(plant, optimal_gain(plant, P))
+    if first is None:
+        return None
+    second = gain_covariance(plant, optimal_gain(plant, first))
+    if second is None:
+        return None
+    step = float(np.linalg.norm(first - P))
+    ratio = min(float(np.linalg.norm(second - first)) / step, SLOWEST) if step > 0 else 0.0
+    return (first - P) / (1 - ratio)
 
 
 def riccati_residual(plant: Plant, P: Matrix) -> float:

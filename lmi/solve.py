@@ -72,8 +72,8 @@ class Outcome:
 def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT) -> Outcome:
     """Call the solver once and judge the numbers that it leaves in the program's variables.
 
-    Clarabel's chordal decomposition is off: with it, covariance programs were answered "optimal" and wrong. CVXPY's
-    warnings are kept from the user; the outcome says what they would.
+    Clarabel's chordal decomposition is off: the programs are dense, and it would only add a transformation to trust.
+    CVXPY's warnings are kept from the user; the outcome says what they would.
     """
     options: dict[str, Any] = {
         "tol_gap_abs": accuracy.tolerance,

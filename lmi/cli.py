@@ -1,0 +1,97 @@
+"""The command line of the convex programs: `lmi validate PLANT`."""
+
+import sys
+from typing import Any, NoReturn
+
+import click
+
+from derive._version import __version__
+
+__all__ = ["cli", "main"]
+
+BAD_INPUT = 2
+"""Exit code for bad input or usage."""
+
+
+class OneLineErrors(click.Group):
+    """A group of commands that reports every error as one line on standard error."""
+
+    def main(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Run the command line and exit."""
+        try:
+            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except click.ClickException as error:
+            message = " ".join(error.format_message().split())
+            click.echo(f"lmi: {message}", err=True)
+            code = BAD_INPUT
+        except click.Abort:
+            click.echo("lmi: stopped", err=True)
+            code = 130
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+@click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="lmi")
+def cli() -> None:
+    """Convex programs for optimal estimation.
+
+    Exit codes: 0 confirmed and none disagrees, 1 a route disagrees, 2 bad input or usage, 3 nothing could be confirmed.
+    """
+
+
+@cli.command()
+@click.argument("plant")
+@click.option(
+    "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True, help="What to print."
+)
+def validate(plant: str, form: str) -> int:
+    """Compute the optimal error covariance of PLANT by every route and compare them in one table.
+
+    PLANT is a file (.toml, .json, .npz, .mat) with time, A, C, W, V and optionally N, M, B, D_u.
+    """
+    from derive.errors import InputError
+    from lmi.validation import validate as run
+
+    try:
+        with _Progress() as progress:
+            validation = run(plant, progress=progress)
+    except InputError as error:
+        raise click.ClickException(str(error)) from None
+    if form == "json":
+        import json
+
+        click.echo(json.dumps(validation.as_dict(), indent=2, allow_nan=False))
+    else:
+        from lmi.report import print_table
+
+        print_table(validation)
+    return validation.verdict.exit_code
+
+
+class _Progress:
+    """Show on a terminal which route runs; show nothing when standard error is not one."""
+
+    def __init__(self) -> None:
+        self.status: Any = None
+
+    def __enter__(self) -> Any:
+        if sys.stderr.isatty():
+            from rich.console import Console
+
+            self.status = Console(stderr=True).status("plant")
+            self.status.start()
+        return self.show
+
+    def show(self, route: str) -> None:
+        """Name the route that starts now."""
+        if self.status is not None:
+            self.status.update(route)
+
+    def __exit__(self, *_: object) -> None:
+        if self.status is not None:
+            self.status.stop()
+
+
+def main() -> NoReturn:
+    """Run the command line and exit."""
+    cli.main()

@@ -1,0 +1,78 @@
+"""A validation as text for a terminal: one table, the reasons beneath it, one line with the verdict."""
+
+from typing import TextIO
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from lmi.validation import AGREEMENT, Route, Validation, Verdict
+
+__all__ = ["print_table"]
+
+STYLES = {Verdict.AGREE: "bold green", Verdict.DISAGREE: "bold red", Verdict.UNCONFIRMED: "bold yellow"}
+
+
+def print_table(validation: Validation, file: TextIO | None = None) -> None:
+    """Print the table of routes; plain text when the file is no terminal."""
+    console = Console(file=file, highlight=False)
+    plant = validation.plant
+    console.print(Text(f"{plant.name}: {plant.time} time, states {plant.n}, outputs {plant.l}"), soft_wrap=True)
+    console.print(_table(validation))
+    for route in validation.routes:
+        if ":" in route.status:
+            console.print(Text(f"{route.name}: {route.status}"), soft_wrap=True)
+    console.print(Text(verdict_line(validation), style=STYLES[validation.verdict]), soft_wrap=True)
+
+
+def verdict_line(validation: Validation) -> str:
+    """Return the verdict in one line: who confirms, or who disagrees and by how much."""
+    riccati = validation.routes[0]
+    confirming = [route for route in validation.routes if route.agrees and riccati.name in route.independent_of]
+    match validation.verdict:
+        case Verdict.AGREE:
+            worst = max(route.relative_difference or 0.0 for route in confirming)
+            strong = " (strong solution)" if riccati.status == "strong" else ""
+            names = ", ".join(route.name for route in confirming)
+            return f"agree: {names} confirm riccati{strong} to {worst:.0e}"
+        case Verdict.DISAGREE:
+            names = ", ".join(
+                f"{route.name} by {route.relative_difference:.0e}" for route in validation.routes if route.disagrees
+            )
+            return f"disagree: tolerance {AGREEMENT:.0e}, from riccati differ {names}"
+        case Verdict.UNCONFIRMED:
+            return "unconfirmed: no route independent of riccati gave a result accurate enough to confirm it"
+
+
+def _table(validation: Validation) -> Table:
+    plant = validation.plant
+    weighted = bool((np.eye(plant.n) != plant.M).any())
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), header_style="bold")
+    table.add_column("route", no_wrap=True)
+    numbers = ("tr MP" if weighted else "tr P", "tr CPC'V^-1" if plant.is_continuous else "ln|CPC'+R|")
+    for name in (*numbers, "rel.diff", "residual", "seconds"):
+        table.add_column(name, justify="right", no_wrap=True)
+    table.add_column("status", no_wrap=True)
+    for route in validation.routes:
+        value = route.cost if weighted else route.trace
+        table.add_row(
+            route.name,
+            _number(value, ".6g"),
+            _number(route.output, ".6g"),
+            _number(route.relative_difference, ".0e"),
+            _number(route.residual, ".0e"),
+            f"{route.seconds:.2f}",
+            Text(route.status.partition(":")[0], style=_style(route)),
+        )
+    return table
+
+
+def _number(value: float | None, form: str) -> str:
+    return "-" if value is None else f"{value:{form}}"
+
+
+def _style(route: Route) -> str:
+    if route.disagrees:
+        return "bold red"
+    return "" if route.trusted else "dim"

@@ -1,0 +1,177 @@
+"""The independent ways to the optimal error covariance, each run on a plant and reported in one form."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.numeric.modes import distance_to_stability
+from derive.numeric.plant import Plant
+from lmi.covariance import covariance_error, solve_covariance
+from lmi.programs.h2 import h2
+from lmi.programs.optimal_covariance import optimal_covariance
+from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
+from lmi.programs.program import Program
+from lmi.solve import Status
+
+__all__ = ["ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_of"]
+
+Matrix = NDArray[np.floating[Any]]
+
+EIGENVALUE_SAFETY = 100.0
+"""Factor by which the estimated error of computed eigenvalues is enlarged."""
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What a route found: a covariance with its gain, or the output error alone.
+
+    Attributes:
+        status: "solved" or what else became of it, with the reason.
+        P: error covariance (n, n), or None.
+        gain: observer gain (n, l), or None.
+        output: tr(C P C' V^-1) [1/s], in discrete time ln det(C P C' + V), or None.
+        error: estimated absolute error, of tr(M P) when there is P, else of the output; infinite when P solves nothing.
+        unique: whether the route determines P itself, not only tr(M P).
+        boundary_modes: modes that a strong solution leaves on the boundary of stability.
+    """
+
+    status: str
+    P: Matrix | None = None
+    gain: Matrix | None = None
+    output: float | None = None
+    error: float = np.inf
+    unique: bool = True
+    boundary_modes: tuple[complex, ...] = ()
+
+
+@dataclass(frozen=True)
+class RouteSpec:
+    """A route: how to run it, which routes it shares no computation with, and how large a plant it takes."""
+
+    name: str
+    run: Callable[[Plant], Answer]
+    independent_of: tuple[str, ...]
+    largest: int | None = None
+
+
+def cost_of(plant: Plant, P: Matrix) -> float:
+    """Return tr(M P)."""
+    return float(np.trace(plant.M @ P))
+
+
+def output_of(plant: Plant, P: Matrix) -> float:
+    """Return tr(C P C' V^-1) [1/s], in discrete time ln det(C P C' + V)."""
+    output = plant.C @ P @ plant.C.T
+    if plant.is_continuous:
+        return float(np.trace(np.linalg.solve(plant.V, output)))
+    return float(np.linalg.slogdet(output + plant.V)[1])
+
+
+def nuclear_norm(plant: Plant, D: Matrix) -> float:
+    """Return the sum of |eigenvalues| of M^(1/2) D M^(1/2): |tr(M D)| without the cancellation between its signs."""
+    sizes, directions = np.linalg.eigh(plant.M)
+    root = directions * np.sqrt(np.maximum(sizes, 0.0))
+    return float(np.abs(np.linalg.eigvalsh(root.T @ D @ root)).sum())
+
+
+def _with_newton_error(
+    plant: Plant, status: str, P: Matrix, gain: Matrix, refined: Matrix | None, **kept: Any
+) -> Answer:
+    error = np.inf if refined is None else nuclear_norm(plant, refined - P)
+    return Answer(status, P, gain, output_of(plant, P), error, **kept)
+
+
+def _riccati(plant: Plant) -> Answer:
+    from derive.numeric.riccati import solve_riccati
+
+    solution = solve_riccati(plant)
+    if solution.status == "failed":
+        return Answer("failed: no stabilising solution of the Riccati equation was reached")
+    P = solution.P
+    error = solution.residual * abs(cost_of(plant, P))
+    modes = tuple(complex(mode) for mode in solution.boundary_modes)
+    return Answer(solution.status, P, solution.gain, output_of(plant, P), error, boundary_modes=modes)
+
+
+def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
+    """Return the route that solves a convex program."""
+
+    def run(plant: Plant) -> Answer:
+        solution = solve_covariance(plant, build)
+        outcome = solution.outcome
+        if solution.P is None or solution.gain is None:
+            return Answer(f"{outcome.status.value} (solver: {outcome.raw_status})")
+        error = solution.error if outcome.status is Status.SOLVED else None
+        return _covariance(plant, outcome.status.value, solution.P, solution.gain, error)
+
+    return run
+
+
+def _nlp(plant: Plant) -> Answer:
+    from derive.numeric.gain_nlp import optimise_gain
+
+    result = optimise_gain(plant)
+    answer = _covariance(plant, result.status, result.P, result.gain, covariance_error(plant, result.P))
+    return replace(answer, unique=bool(np.linalg.eigvalsh(plant.M)[0] > 0))
+
+
+def _covariance(plant: Plant, status: str, P: Matrix, gain: Matrix, error: Matrix | None) -> Answer:
+    size = np.inf if error is None else nuclear_norm(plant, error)
+    return Answer(status, P, gain, output_of(plant, P), size)
+
+
+def _integral(plant: Plant) -> Answer:
+    from derive.numeric.spectrum import output_error_integral
+
+    result = output_error_integral(plant)
+    return Answer("solved", output=result.value, error=result.error_estimate)
+
+
+def _hamiltonian(plant: Plant) -> Answer:
+    from derive.numeric.spectrum import hamiltonian_route
+
+    result = hamiltonian_route(plant)
+    if not np.isfinite(result.value):
+        return Answer("inaccurate: computed modes do not split into stable and unstable ones")
+    return Answer("solved", output=result.value, error=_eigenvalue_error(plant, result.modes))
+
+
+def _eigenvalue_error(plant: Plant, modes: NDArray[Any]) -> float:
+    """Estimate the error of a sum of modes that merge with their mirror images on the boundary of stability.
+
+    A perturbation of relative size eps moves a mode p at distance d from the boundary by about eps |p|max^2 / d.
+    """
+    if len(modes) == 0:
+        return 0.0
+    scale = float(np.abs(modes).max()) if plant.is_continuous else 1.0
+    distances = np.maximum(-distance_to_stability(modes, plant.time), np.finfo(float).tiny)
+    return float(EIGENVALUE_SAFETY * np.finfo(float).eps * scale * np.sum(scale / distances))
+
+
+def _closed_form(plant: Plant) -> Answer:
+    from derive.numeric.scalar import scalar_covariance
+
+    if plant.n > 1:
+        return Answer(f"not applicable: {plant.n} states, the closed form is for one")
+    P = scalar_covariance(plant)
+    return Answer("solved", P)
+
+
+_CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2")
+_OTHERS = ("nlp", "integral", "closed-form")
+
+ROUTES = (
+    RouteSpec("riccati", _riccati, (*_CONVEX, *_OTHERS)),
+    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, "hamiltonian"), largest=40),
+    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=40),
+    RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, "hamiltonian"), largest=20),
+    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "integral", "hamiltonian", "closed-form")),
+    RouteSpec("integral", _integral, ("riccati", *_CONVEX, "nlp", "hamiltonian", "closed-form")),
+    RouteSpec("hamiltonian", _hamiltonian, (*_CONVEX, "nlp", "integral", "closed-form")),
+    RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "nlp", "integral", "hamiltonian")),
+)
+"""Riccati first. The convex programs share coordinates and solver, Riccati and the Hamiltonian's eigenvalues the same
+matrix, so that these do not confirm each other."""

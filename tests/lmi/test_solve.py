@@ -1,0 +1,99 @@
+"""A solver's answer is judged by its numbers, not by its word."""
+
+import warnings
+
+import cvxpy as cp
+import numpy as np
+import pytest
+
+from derive.numeric.plant import example_plant, plant_from_mapping
+from lmi.covariance import solve_covariance
+from lmi.programs.h2 import h2
+from lmi.programs.optimal_covariance import optimal_covariance
+from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
+from lmi.programs.program import Program
+from lmi.solve import Accuracy, Status, solve_program
+
+PROGRAMS = (optimal_covariance, optimal_covariance_dual, h2)
+
+
+@pytest.fixture
+def lying_solver(monkeypatch):
+    """Replaces the solver by one that enlarges its answer and still says optimal."""
+    honest = cp.Problem.solve
+
+    def solve(self, *args, **kwargs):
+        value = honest(self, *args, **kwargs)
+        for variable in self.variables():
+            variable.save_value(1.001 * variable.value)
+        for constraint in self.constraints:
+            for dual in constraint.dual_variables:
+                dual.save_value(1.001 * np.asarray(dual.value))
+        return value
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+
+
+@pytest.mark.parametrize("build", PROGRAMS)
+def test_honest_answer_is_solved(build):
+    outcome = solve_program(build(example_plant()))
+    assert outcome.status is Status.SOLVED
+    assert outcome.margin > -1e-8
+    assert outcome.violation < 1e-8
+    assert outcome.iterations > 0
+
+
+@pytest.mark.usefixtures("lying_solver")
+@pytest.mark.parametrize("build", [optimal_covariance, optimal_covariance_dual])
+def test_answer_that_breaks_its_constraints_is_inaccurate_though_optimal(build):
+    outcome = solve_program(build(example_plant()))
+    assert outcome.raw_status in ("optimal", "optimal_inaccurate")
+    assert outcome.status is Status.INACCURATE
+
+
+@pytest.mark.usefixtures("lying_solver")
+@pytest.mark.parametrize("build", PROGRAMS)
+def test_false_answer_is_seen_by_its_newton_error(build):
+    solution = solve_covariance(example_plant(), build)
+    assert solution.error is None or np.linalg.norm(solution.error) > 1e-4 * np.linalg.norm(solution.P)
+
+
+def test_infeasible_and_unbounded_are_told_apart():
+    X = cp.Variable((2, 2), symmetric=True)
+    infeasible = cp.Problem(cp.Minimize(cp.trace(X)), [X >> 0, cp.trace(X) == -1])
+    assert solve_program(Program("infeasible", infeasible, lambda: NotImplemented)).status is Status.INFEASIBLE
+    unbounded = cp.Problem(cp.Maximize(cp.trace(X)), [X >> 0])
+    assert solve_program(Program("unbounded", unbounded, lambda: NotImplemented)).status is Status.UNBOUNDED
+
+
+def test_solver_that_gives_up_is_a_status_not_an_exception(monkeypatch):
+    def solve(self, *args, **kwargs):
+        raise cp.SolverError("Solver 'CLARABEL' failed.\nTry another.")
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+    solution = solve_covariance(example_plant(), h2)
+    assert solution.outcome.status is Status.FAILED
+    assert solution.outcome.raw_status == "Solver 'CLARABEL' failed."
+    assert solution.P is None
+    assert solution.attempts == 3
+
+
+def test_numbers_that_are_not_finite_are_a_failure(monkeypatch):
+    honest = cp.Problem.solve
+
+    def solve(self, *args, **kwargs):
+        honest(self, *args, **kwargs)
+        for variable in self.variables():
+            variable.save_value(np.full(variable.shape, np.nan))
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+    assert solve_program(optimal_covariance(example_plant())).status is Status.FAILED
+
+
+def test_warnings_of_the_modelling_layer_do_not_reach_the_user():
+    plant = plant_from_mapping({"time": "continuous", "A": [[0, 1], [0, 0]], "C": [[1, 0]], "W": 0 * np.eye(2), "V": 1})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        for build in PROGRAMS:
+            solve_program(build(plant), Accuracy(1e-15, 1e-8))
+    assert caught == []
