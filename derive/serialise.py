@@ -166,7 +166,7 @@ class Reader:
             if not isinstance(data, str) or not RATIONAL.fullmatch(data):
                 raise InputError(f'{name}: expected a rational number "p/q", got {shown(data)}')
             return Fraction(data)
-        if type(data) is not kind or (isinstance(data, str) and len(data) > 500):
+        if type(data) is not kind or (isinstance(data, str) and len(data) > 20_000):
             raise InputError(f"{name}: expected {kind.__name__}, got {shown(data)}")
         if isinstance(data, str) and name in CHECKS:
             CHECKS[name](self.theory, data)
