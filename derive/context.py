@@ -33,21 +33,31 @@ FACT_OF = {"⪰": "psd", "≻": "pd"}
 
 @dataclass(frozen=True)
 class Declared:
-    """A definition (:=) or hypothesis of a theory: its name, what it says, and a sentence for the reader."""
+    """A definition (:=) or hypothesis of a theory: its name, what it says, and a sentence for the reader.
+
+    A hypothesis that is a ``case`` (P > 0 of the information form) is made only by the steps that name it; the theory
+    does not always hold it in force.
+    """
 
     name: str
     statement: Equation
     kind: Literal["definition", "hypothesis"]
     text: str = ""
+    case: bool = False
 
 
 @dataclass(frozen=True)
 class DeclaredInverse:
-    """A letter for the inverse of a term; it may be used once the fact ``because`` (of > 0) is there."""
+    """A letter for the inverse of a term; it may be used once its reason is there.
+
+    The reason is the name of a fact (M > 0, or M invertible), or the term ``by`` and the names of two proved
+    identities M * by = I and by * M = I.
+    """
 
     name: str
     of: Term
-    because: str
+    because: str | tuple[str, str]
+    by: Term | None = None
 
 
 @dataclass(frozen=True)
@@ -58,6 +68,7 @@ class DeclaredFact:
     kind: str
     matrix: Term
     text: str = ""
+    case: bool = False
 
 
 @dataclass
@@ -76,10 +87,20 @@ class Theory:
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
 
     def matrix(
-        self, name: str, rows: str, cols: str, glyph: Glyph | None = None, *, symmetric: bool = False,
-        random: bool = False, constant: bool = True, parameter: bool = True, show_args: tuple[str, ...] | None = None,
-        meaning: str = "", unit: str = "",
-    ) -> Symbol:  # fmt: skip
+        self,
+        name: str,
+        rows: str,
+        cols: str,
+        glyph: Glyph | None = None,
+        *,
+        symmetric: bool = False,
+        random: bool = False,
+        constant: bool = True,
+        parameter: bool = True,
+        show_args: tuple[str, ...] | None = None,
+        meaning: str = "",
+        unit: str = "",
+    ) -> Symbol:
         """Declare a matrix or vector; constant in time and untouched by the gain unless said otherwise."""
         symbol = Symbol(
             name, rows, cols, glyph or Glyph(name), symmetric, show_args=show_args, meaning=meaning, unit=unit
@@ -91,9 +112,17 @@ class Theory:
         return symbol
 
     def varying(
-        self, name: str, rows: str, cols: str, glyph: Glyph | None = None, *, symmetric: bool = False,
-        parameter: bool = True, meaning: str = "", unit: str = "",
-    ) -> Symbol:  # fmt: skip
+        self,
+        name: str,
+        rows: str,
+        cols: str,
+        glyph: Glyph | None = None,
+        *,
+        symmetric: bool = False,
+        parameter: bool = True,
+        meaning: str = "",
+        unit: str = "",
+    ) -> Symbol:
         """Declare a matrix that varies with time: M means M(t), and the argument is printed when it is another time."""
         plain = self.matrix(
             name,
@@ -110,9 +139,15 @@ class Theory:
         return self.symbols[name]
 
     def signal(
-        self, name: str, rows: str, glyph: Glyph | None = None, *, mean: Literal["zero", "any"] = "zero",
-        meaning: str = "", unit: str = "",
-    ) -> Symbol:  # fmt: skip
+        self,
+        name: str,
+        rows: str,
+        glyph: Glyph | None = None,
+        *,
+        mean: Literal["zero", "any"] = "zero",
+        meaning: str = "",
+        unit: str = "",
+    ) -> Symbol:
         """Declare a random signal x = x(t); with a mean that is not zero its expectation has no rule."""
         symbol = self.varying(name, rows, "1", glyph, parameter=False, meaning=meaning, unit=unit)
         (self.random if mean == "zero" else self.uncentred).add(name)
@@ -135,20 +170,38 @@ class Theory:
         self.declared[name] = Declared(name, statement, "definition", text)
         return statement
 
-    def assume(self, name: str, lhs: Term, relation: str, rhs: Term | None = None, text: str = "") -> Equation:
-        """Declare a hypothesis; ``rhs`` is zero when left out."""
+    def assume(
+        self, name: str, lhs: Term, relation: str, rhs: Term | None = None, text: str = "", *, case: bool = False
+    ) -> Equation:
+        """Declare a hypothesis; ``rhs`` is zero when left out, a ``case`` is not always in force."""
         statement = Equation(lhs, relation, rhs if rhs is not None else Zero("", ""))
-        self.declared[name] = Declared(name, statement, "hypothesis", text)
+        self.declared[name] = Declared(name, statement, "hypothesis", text, case)
         return statement
 
-    def fact(self, name: str, kind: str, matrix: Term, text: str = "") -> None:
-        """Declare that a matrix is Hurwitz or Schur, or at least 0 at the initial time."""
-        self.declared[name] = DeclaredFact(name, kind, matrix, text)
+    def fact(self, name: str, kind: str, matrix: Term, text: str = "", *, case: bool = False) -> None:
+        """Declare that a matrix is Hurwitz, Schur or invertible, or at least 0 at the initial time."""
+        self.declared[name] = DeclaredFact(name, kind, matrix, text, case)
 
-    def inverse(self, name: str, of: Term, rows: str, *, symmetric: bool = False, because: str) -> None:
-        """Declare the letter for an inverse, usable once the fact ``because`` holds."""
+    def inverse(
+        self,
+        name: str,
+        of: Term,
+        rows: str,
+        *,
+        symmetric: bool = False,
+        because: str | tuple[str, str],
+        by: Term | None = None,
+    ) -> None:
+        """Declare the letter for an inverse, usable once the fact ``because`` holds, or two identities with ``by``."""
         self.symbols[name] = Symbol(name, rows, rows, Glyph(name), symmetric)
-        self.declared[name] = DeclaredInverse(name, of, because)
+        self.declared[name] = DeclaredInverse(name, of, because, by)
+
+    def statement(self, name: str) -> Equation:
+        """Return what a definition or hypothesis says."""
+        item = self.declared[name]
+        if not isinstance(item, Declared):
+            raise Rejected(f"{name} is not an equation")
+        return item.statement
 
     def alphabet(self) -> Alphabet:
         """Return the kernel's alphabet of this theory."""
@@ -211,33 +264,38 @@ def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
     match lhs:
         case Dot(Symbol() as x) if x.letter not in context.derivatives:
             ((rate,),) = lower(rhs, reading)
-            return replace(reading, context=replace(context, derivatives={**context.derivatives, x.letter: rate}))
+            context = replace(context, derivatives={**context.derivatives, x.letter: rate})
+            return replace(reading, context=context, origins={**reading.origins, x.letter: name})
         case Expect(Product((Symbol() as a, Transpose(Symbol() as b)))):
             ((moment,),) = lower(rhs, reading)
             key = (a.letter, context.alphabet.flip(b.letter))
             if key not in context.moments:
-                return replace(reading, context=replace(context, moments={**context.moments, key: moment}))
+                context = replace(context, moments={**context.moments, key: moment})
+                return replace(reading, context=context, origins={**reading.origins, key: name})
         case _:
             pass
     grid = _difference(statement, reading)
-    named = {name if len(grid) == len(row) == 1 else f"{name}[{i + 1},{j + 1}]": p
-             for i, row in enumerate(grid) for j, p in enumerate(row) if p.terms}  # fmt: skip
+    named = {
+        name if len(grid) == len(row) == 1 else f"{name}[{i + 1},{j + 1}]": p
+        for i, row in enumerate(grid)
+        for j, p in enumerate(row)
+        if p.terms
+    }
     return replace(reading, context=replace(context, relations={**context.relations, **named}))
 
 
 def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
-    """Extend a reading by the two relations of an inverse, if its reason, a fact of > 0 on that matrix, holds.
+    """Extend a reading by the two relations of an inverse, if its reason holds.
+
+    M X = I, X M = I
 
     Raises:
         MissingInverse: the reason is not proved yet.
+        Rejected: the reason is about something else.
     """
     context = reading.context
     ((poly,),) = lower(item.of, reading)
-    reason = context.facts.get(item.because)
-    if reason is None:
-        raise MissingInverse(f"{item.because} is not proved yet")
-    if reason.kind not in ("pd", "invertible") or reason.matrix != ((poly,),):
-        raise Rejected(f"{item.because} is not a reason why {item.name} exists")
+    _check_reason(item, poly, reading)
     inverse = Poly({((), (item.name,)): Fraction(1)}, poly.cols, poly.rows)
     relations = {
         **context.relations,
@@ -245,10 +303,26 @@ def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
         f"{item.name}.left": inverse * poly - identity(poly.cols),
     }
     return replace(
-        reading,
-        context=replace(context, relations=relations),
-        inverses={**reading.inverses, poly: item.name},
+        reading, context=replace(context, relations=relations), inverses={**reading.inverses, poly: item.name}
     )
+
+
+def _check_reason(item: DeclaredInverse, poly: Poly, reading: Reading) -> None:
+    """Reject an inverse of M without a reason: M > 0, M invertible, or M X = I and X M = I for the term X."""
+    context = reading.context
+    if isinstance(item.because, str):
+        fact = context.facts.get(item.because)
+        found = fact and fact.kind in ("pd", "invertible") and fact.matrix == ((poly,),)
+        missing = [] if fact else [item.because]
+    else:
+        ((by,),) = lower(item.by or item.of, reading)
+        wanted = (poly * by - identity(poly.rows), by * poly - identity(poly.cols))
+        missing = [name for name in item.because if name not in context.relations]
+        found = all(context.relations.get(n) == p for n, p in zip(item.because, wanted, strict=True))
+    if missing:
+        raise MissingInverse(f"{' and '.join(missing)} not proved yet")
+    if not found:
+        raise Rejected(f"{item.because} is not a reason why {item.name} exists")
 
 
 def names_of(name: str, relations: Mapping[str, Poly]) -> list[str]:

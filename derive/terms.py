@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from fractions import Fraction
 
-from derive.kernel import Poly, Rejected, identity
+from derive.kernel import Poly, Rejected, identity, parts
 from derive.rules import Context, Grid, differentiate, expect, sift, substitute
 
 Size = str
@@ -238,12 +238,17 @@ class MissingInverse(Rejected):
 
 @dataclass(frozen=True)
 class Reading:
-    """What a term is read in: the kernel's context, declared inverses, named maps of letters, adopted declarations."""
+    """What a term is read in.
+
+    The kernel's context, declared inverses, named maps of letters, the names of the adopted declarations, and which
+    declaration or lemma each entry of the tables of derivatives and moments comes from.
+    """
 
     context: Context
     inverses: Mapping[Poly, str] = field(default_factory=dict[Poly, str])
     maps: Mapping[str, Mapping[str, Poly]] = field(default_factory=dict[str, Mapping[str, Poly]])
     adopted: frozenset[str] = frozenset()
+    origins: Mapping[str | tuple[str, str], str] = field(default_factory=dict["str | tuple[str, str]", str])
 
 
 def grid_map(function: Callable[[Poly], Poly], grid: Grid) -> Grid:
@@ -317,7 +322,7 @@ def lower(term: Term, reading: Reading) -> Grid:
         case Image(name, body):
             if name not in reading.maps:
                 raise Rejected(f"unknown map {name}")
-            return grid_map(lambda p: substitute(p, reading.maps[name], context.alphabet), lower(body, reading))
+            return grid_map(lambda p: image(p, name, reading), lower(body, reading))
         case _:
             raise Rejected(f"{type(term).__name__} has no meaning as a matrix here")
 
@@ -346,13 +351,34 @@ def _lower_inverse(body: Term, reading: Reading) -> Poly:
     grid = lower(body, reading)
     if len(grid) != 1 or len(grid[0]) != 1:
         raise Rejected("the inverse of a block matrix is written out by blocks")
-    poly, alphabet = grid[0][0], reading.context.alphabet
+    return _inverse_of(grid[0][0], reading)
+
+
+def _inverse_of(poly: Poly, reading: Reading) -> Poly:
+    alphabet = reading.context.alphabet
     for candidate, turned in ((poly, False), (alphabet.transpose(poly), True)):
         name = reading.inverses.get(candidate)
         if name is not None:
             letter = alphabet.flip(name) if turned else name
             return Poly({((), (letter,)): 1}, poly.cols, poly.rows)
     raise MissingInverse("an inverse is used that is not declared, or whose reason is not proved yet")
+
+
+def image(poly: Poly, name: str, reading: Reading) -> Poly:
+    """Return the image under a map of letters that sends the inverse of M to the inverse of the image of M.
+
+    Raises:
+        Rejected: an inverse goes elsewhere.
+        MissingInverse: the image of M has no declared inverse yet.
+    """
+    images, alphabet = reading.maps[name], reading.context.alphabet
+    letters = {parts(a)[0] for _, w in poly.terms for a in w}
+    for matrix, letter in reading.inverses.items():
+        if letter in letters:
+            found = substitute(Poly({((), (letter,)): 1}, matrix.cols, matrix.rows), images, alphabet)
+            if found != _inverse_of(image(matrix, name, reading), reading):
+                raise Rejected(f"the map {name} does not send {letter} to the inverse of the image of its matrix")
+    return substitute(poly, images, alphabet)
 
 
 def _lower_block(rows: tuple[tuple[Term, ...], ...], reading: Reading) -> Grid:

@@ -5,12 +5,13 @@ Nothing enters a lecture unproved: a step without a certificate raises ``NotDeri
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Literal
 
-from derive.context import Declared, Theory, names_of
+from derive.context import Declared, Theory, consulting, names_of
 from derive.derivation import (
     Derived,
     Erratum,
@@ -52,6 +53,12 @@ class SquareOf:
 
 def _text(reason: str | Text) -> Text:
     return (reason,) if isinstance(reason, str) else reason
+
+
+def _used(proof: Proof, tables: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the declarations and lemmas a step rests on: relations, facts, and entries of tables that were read."""
+    names = [re.sub(r"(\[\d+,\d+\]|\.left|\.right)$", "", r) for r in sorted(proof.relations())]
+    return tuple(dict.fromkeys(n for n in (*names, *tables) if n not in proof.links))
 
 
 class Builder:
@@ -160,12 +167,15 @@ class Builder:
         lemma: bool = False,
     ) -> Step:
         """Prove one equation without displaying it."""
+        reading, *tables = consulting(self.reading)
         try:
-            wanted = claims(statement, rule, self.reading)
+            wanted = claims(statement, rule, reading)
         except Rejected as error:
             raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
         proofs = tuple(replace(c, terms=self.prove(c.claim, using, c.trace, name)) for c in wanted)
-        step = Step(name, statement, rule, _text(reason), Proof(proofs), tuple(using), number, source, lemma)
+        read = sorted(self.reading.origins[key] for table in tables for key in table.read)
+        proof = Proof(proofs)
+        step = Step(name, statement, rule, _text(reason), proof, _used(proof, read), number, source, lemma)
         return self.record(step)
 
     def positive(
@@ -191,19 +201,9 @@ class Builder:
             proof = replace(
                 proof, strict=strict[0], inverse=inverse, inverse_terms=self.prove(injective, using, label=name)
             )
-        step = Step(
-            name,
-            statement,
-            "positivity",
-            _text(reason),
-            Proof(positivity=proof),
-            tuple(using),
-            number,
-            source,
-            lemma=True,
-        )
-        self.items.append(Derived((self.record(step),)))
-        return step
+        done = Proof(positivity=proof)
+        step = Step(name, statement, "positivity", _text(reason), done, _used(done), number, source, True)
+        return self._display(step)
 
     def _rests(self, claim: Grid, squares: Sequence[Square]) -> Grid:
         flip = self.reading.context.alphabet.transpose
@@ -242,19 +242,9 @@ class Builder:
         if kind == "transient":
             equation = equation - differentiate(d, context)
         proof = Comparison(kind, d, m, stable, forcing, self.prove(equation, using, label=name))
-        step = Step(
-            name,
-            statement,
-            "comparison",
-            _text(reason),
-            Proof(comparison=proof),
-            tuple(using),
-            number,
-            source,
-            lemma=True,
-        )
-        self.items.append(Derived((self.record(step),)))
-        return step
+        done = Proof(comparison=proof)
+        step = Step(name, statement, "comparison", _text(reason), done, _used(done), number, source, True)
+        return self._display(step)
 
     def unique(
         self,
@@ -276,7 +266,7 @@ class Builder:
         initial = self.prove(at_start(claim, context), using, label=name)
         proof = Proof(uniqueness=Uniqueness(claim, m, n, rate, initial))
         return self._display(
-            Step(name, statement, "uniqueness", _text(reason), proof, tuple(using), number, source, True)
+            Step(name, statement, "uniqueness", _text(reason), proof, _used(proof), number, source, True)
         )
 
     def lecture(self) -> Lecture:

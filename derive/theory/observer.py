@@ -445,7 +445,7 @@ def optimal_gain(b: Builder) -> None:
         ("The optimal gain is not given.",),
         "Completing the square and comparing gives it, with the cross terms.",
         proved_by="optimal gain",
-        true=b.theory.declared["L*"].statement,
+        true=b.theory.statement("L*"),
     )  # type: ignore[union-attr]
     b.heading("The same from the trace")
     b.state(
