@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Literal
+from typing import Any, Literal
 
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.rules import Context, Fact, Grid
@@ -222,6 +222,9 @@ class Theory:
         reading = Reading(context)
         for name, images in self.maps.items():
             lowered = {letter: lower(image, reading)[0][0] for letter, image in images.items()}
+            for letter, image in lowered.items():
+                if self.symbols[letter].symmetric and context.alphabet.transpose(image) != image:
+                    raise Rejected(f"the map {name} sends the symmetric {letter} to a matrix that is not")
             reading = replace(reading, maps={**reading.maps, name: lowered})
         return self.settle(reading)
 
@@ -323,6 +326,31 @@ def _check_reason(item: DeclaredInverse, poly: Poly, reading: Reading) -> None:
         raise MissingInverse(f"{' and '.join(missing)} not proved yet")
     if not found:
         raise Rejected(f"{item.because} is not a reason why {item.name} exists")
+
+
+class Consulted(dict):  # type: ignore[type-arg]
+    """A table of derivatives or moments that notes which of its entries were read."""
+
+    def __init__(self, table: Mapping[Any, Poly]):
+        super().__init__(table)
+        self.read: set[Any] = set()
+
+    def get(self, key: Any, default: Any = None) -> Any:
+        """Return the entry and note it."""
+        if key in self:
+            self.read.add(key)
+        return super().get(key, default)
+
+    def __getitem__(self, key: Any) -> Poly:
+        self.read.add(key)
+        return super().__getitem__(key)
+
+
+def consulting(reading: Reading) -> tuple[Reading, Consulted, Consulted]:
+    """Return the reading with tables that note what is read."""
+    derivatives, moments = Consulted(reading.context.derivatives), Consulted(reading.context.moments)
+    context = replace(reading.context, derivatives=derivatives, moments=moments)
+    return replace(reading, context=context), derivatives, moments
 
 
 def names_of(name: str, relations: Mapping[str, Poly]) -> list[str]:
