@@ -1,0 +1,119 @@
+"""The command line: `derive tour`, `derive list`, `derive notes`, `derive verify`.
+
+Each command imports what it needs when it runs. Exit codes: 0 everything as expected, 1 something refuted or rejected,
+2 bad input or usage, 3 nothing refuted, something undecided; where several apply, 2 before 1 before 3.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+import click
+
+from derive._version import __version__
+from derive.errors import InputError
+
+__all__ = ["cli", "main"]
+
+REFUTED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+
+
+class OneLineErrors(click.Group):
+    """A group of commands that reports every error as one line on standard error."""
+
+    def main(self, *args: Any, **kwargs: Any) -> NoReturn:
+        """Run the command line and exit."""
+        try:
+            code = super().main(*args, **{**kwargs, "standalone_mode": False})
+        except (click.ClickException, InputError) as error:
+            complain(error.format_message() if isinstance(error, click.ClickException) else str(error))
+            code = BAD_INPUT
+        except click.Abort:
+            complain("stopped")
+            code = INTERRUPTED
+        sys.exit(code if isinstance(code, int) else 0)
+
+
+def complain(message: str) -> None:
+    """Print one line on standard error."""
+    click.echo(f"derive: {' '.join(message.split())}", err=True)
+
+
+@contextmanager
+def progress(label: str) -> Iterator[Any]:
+    """Show on a terminal what is going on; yields a function that names the present work."""
+    if not sys.stderr.isatty():
+        yield lambda _: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(label) as status:
+        yield status.update
+
+
+@click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="derive")
+def cli() -> None:
+    """Equations of optimal estimation, each with a proof that a machine can replay.
+
+    Exit codes: 0 everything as expected, 1 something refuted or rejected, 2 bad input or usage, 3 undecided.
+    """
+
+
+@cli.command("list")
+@click.option("--equations", metavar="DOCUMENT", help="List the equations of a source: 000, 001, 002 or 004.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+def list_command(equations: str | None, as_json: bool) -> None:
+    """List lectures and theories, or the numbered equations of a source with their verdicts."""
+    from derive import catalogue
+
+    if equations is not None:
+        rows = [entry.as_dict() for entry in catalogue.equations(catalogue.document_key(equations))]
+        click.echo(json.dumps(rows, indent=1) if as_json else aligned(rows))
+        return
+    with progress("deriving the lectures"):
+        tables = {"lectures": catalogue.lectures(), "theories": catalogue.theories()}
+    if as_json:
+        click.echo(json.dumps(tables, indent=1, ensure_ascii=False))
+    else:
+        click.echo("\n\n".join(aligned(rows) for rows in tables.values()))
+
+
+def aligned(rows: list[dict[str, str | int]]) -> str:
+    """Return rows as a table of aligned columns."""
+    table = [list(rows[0]), *([str(value) for value in row.values()] for row in rows)] if rows else []
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return "\n".join("  ".join(map(str.ljust, row, widths)).rstrip() for row in table)
+
+
+@cli.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path))
+def verify(files: tuple[Path, ...]) -> int:
+    """Replay the certificates in each FILE with the kernel and the installed theories."""
+    from derive.replay import verify_file
+
+    codes = {0}
+    for path in files:
+        try:
+            reports = verify_file(path)
+        except InputError as error:
+            complain(str(error))
+            codes.add(BAD_INPUT)
+            continue
+        for report in reports:
+            name = report.lecture or "certificate"
+            click.echo(f"{path}: {name}: {report.proved} of {report.total} proved ({report.authority})")
+            for outcome in (o for o in report.outcomes if not o.accepted):
+                click.echo(f"  rejected {outcome.step}: {outcome.message}")
+                codes.add(REFUTED)
+    return BAD_INPUT if BAD_INPUT in codes else max(codes)
+
+
+def main() -> NoReturn:
+    """Run the command line and exit."""
+    cli.main()
