@@ -1,0 +1,128 @@
+"""Every lecture replays; no mutated statement does; what each step rests on is pinned."""
+
+from __future__ import annotations
+
+import json
+import random
+from dataclasses import replace
+from importlib import util
+from pathlib import Path
+
+import pytest
+
+from derive.derivation import check, claims, learn, order_claim
+from derive.kernel import Rejected
+from derive.matrix.search import prove
+from derive.terms import Equation, Reading
+from derive.theory import LECTURES, lecture
+
+PINNED = Path(__file__).parents[2] / "reference" / "relations.json"
+
+
+def load_mutants():
+    spec = util.spec_from_file_location("mutants", Path(__file__).with_name("mutants.py"))
+    module = util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.mutants
+
+
+mutants = load_mutants()
+
+
+def meaning(statement: Equation, rule: str, reading: Reading):
+    if rule in ("positivity", "comparison", "uniqueness"):
+        return order_claim(statement, reading)
+    return [c.claim for c in claims(statement, rule, reading)]
+
+
+def walk(key: str):
+    """Iterate over (step, what may be used before it, steps before it)."""
+    item, earlier = lecture(key), {}
+    reading = item.theory.reading()
+    for step in item.steps:
+        yield step, reading, dict(earlier)
+        earlier[step.name] = step
+        reading = learn(reading, item.theory, step)
+
+
+@pytest.mark.parametrize("key", LECTURES)
+def test_every_step_replays(key):
+    outcomes = lecture(key).verify()
+    assert [o for o in outcomes if not o.accepted] == []
+    assert len(outcomes) >= 10
+
+
+@pytest.mark.parametrize("key", LECTURES)
+def test_no_mutated_statement_replays(key):
+    tried = 0
+    for step, reading, earlier in walk(key):
+        for side in ("lhs", "rhs"):
+            for other in mutants(getattr(step.statement, side)):
+                statement = replace(step.statement, **{side: other})
+                if statement == step.statement:
+                    continue
+                if step.rule != "chain":
+                    try:
+                        if meaning(statement, step.rule, reading) == meaning(step.statement, step.rule, reading):
+                            continue
+                    except Rejected:
+                        pass
+                tried += 1
+                with pytest.raises(Rejected):
+                    check(replace(step, statement=statement), reading, earlier)
+    assert tried > 100
+
+
+@pytest.mark.parametrize("key", LECTURES)
+def test_no_mutated_statement_is_proved(key):
+    """The search finds no certificate for a mutant from all that the theory and the lemmas before it offer."""
+    rng, candidates = random.Random(7), []
+    for step, reading, _ in walk(key):
+        if step.rule != "identity" or not step.number:
+            continue
+        for other in mutants(step.statement.rhs):
+            statement = replace(step.statement, rhs=other)
+            try:
+                wanted = claims(statement, step.rule, reading)
+            except Rejected:
+                continue
+            if [c.claim for c in wanted] != [c.claim for c in claims(step.statement, step.rule, reading)]:
+                candidates.append((statement, wanted, reading, step))
+    for statement, wanted, reading, step in rng.sample(candidates, min(12, len(candidates))):
+        names = {r for c in step.proof.identities for t in c.terms for r in (t.relation,)}
+        relations = {k: v for k, v in reading.context.relations.items() if k in names}
+        found = [prove(c.claim, relations, reading.context.alphabet, seconds=0.3) for c in wanted]
+        assert None in found, statement
+
+
+@pytest.mark.parametrize("key", LECTURES)
+def test_nothing_that_is_derived_was_declared(key):
+    """No numbered equation is a hypothesis of the theory; it may fold a definition."""
+    item = lecture(key)
+    relations = item.theory.reading().context.relations
+    hypotheses = {n for n, d in item.theory.declared.items() if getattr(d, "kind", "") == "hypothesis"}
+    declared = [p for n, p in relations.items() if n.partition("[")[0] in hypotheses]
+    for step, reading, _ in walk(key):
+        if step.number and step.rule in ("identity", "trace"):
+            for c in claims(step.statement, step.rule, reading):
+                assert not c.claim.terms or all(c.claim not in (r, -r) for r in declared), step.name
+
+
+def test_what_each_step_rests_on_is_pinned():
+    """Change tests/reference/relations.json only when a derivation really rests on something else."""
+    found = {key: {s.name: sorted(s.uses) for s in lecture(key).steps} for key in LECTURES}
+    assert found == json.loads(PINNED.read_text(encoding="utf-8"))
+
+
+def test_numbered_equations_of_the_sources_are_reached():
+    wanted = {
+        "observer": {"u1", "u2", "31.10", "u3", "u4", "u5", "u6"},
+        "covariance": {"u1", "u2", "u3", "u4", "u5", "u6", "u7", "u8"},
+        "kalman-bucy": {"1", "2", "3", "4", "13", "16"},
+        "luenberger": {"1", "2", "3", "4", "5"},
+    }
+    for key, numbers in wanted.items():
+        item = lecture(key)
+        rows = [r for i in item.items if hasattr(i, "rows") for r in i.rows]
+        reached = {s.number for s in item.steps} | {r.number for r in rows}
+        assert numbers <= reached, key
