@@ -7,12 +7,13 @@ certificate and the file shows it as it prints: same LaTeX, same list of relatio
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from derive.context import Declared, Theory
-from derive.derivation import Erratum, Outcome, Proof, learn, verify
+from derive.derivation import Erratum, Outcome, Proof, Step, learn, verify
 from derive.document import SCHEMA, Document, document_from_json, document_to_json, installed
 from derive.errors import InputError
 from derive.files import read_limited
@@ -104,9 +105,9 @@ def verify_data(data: Any, path: str) -> Report:
     document = document_from_json(data)
     again = document_to_json(document, data["version"])
     outcomes = [
-        _as_shown(outcome, shows, prints)
-        for outcome, shows, prints in zip(
-            verify(document.theory, document.steps), data["steps"], again["steps"], strict=True
+        _names_all(_as_shown(outcome, shows, prints), step, document.theory)
+        for outcome, step, shows, prints in zip(
+            verify(document.theory, document.steps), document.steps, data["steps"], again["steps"], strict=True
         )
     ]
     proved = {o.step for o in outcomes if o.accepted}
@@ -121,6 +122,15 @@ def _as_shown(outcome: Outcome, shows: dict[str, Any], prints: dict[str, Any]) -
         return outcome
     detail = f": {prints[wrong[0]]}" if wrong[0] == "latex" else ""
     return Outcome(outcome.step, False, f"the file shows another {wrong[0]} than the step's own{detail}")
+
+
+def _names_all(outcome: Outcome, step: Step, theory: Theory) -> Outcome:
+    """Reject an accepted step that does not name all that its certificate rests on."""
+    known = {f"I{size}" for size in theory.sizes()} | set(step.proof.links)
+    names = {re.sub(r"(\[\d+,\d+\]|\.left|\.right)$", "", name) for name in step.proof.relations() - known}
+    if not outcome.accepted or names <= set(step.uses):
+        return outcome
+    return Outcome(outcome.step, False, f"it uses {', '.join(sorted(names - set(step.uses)))} without naming it")
 
 
 def _frame(data: dict[str, Any], again: dict[str, Any]) -> list[Outcome]:

@@ -123,6 +123,11 @@ def test_list_of_relations_that_hides_one(data):
     assert "certificates" in rejected(data)["sigma2 written out"]
 
 
+def test_hypothesis_that_is_used_but_not_named(data):
+    step(data, "square")["uses"] = []
+    assert "uses R_e > 0 without naming it" in rejected(data)["square"]
+
+
 def test_statement_edited_but_not_its_certificate(data):
     spoiled = step(data, "sigma2 written out")
     spoiled["statement"]["rhs"][1].pop()
