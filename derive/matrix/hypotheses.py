@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from derive.kernel import Alphabet, Poly
-from derive.rules import Fact
+from derive.rules import Context, Fact
 
 __all__ = ["Hypotheses"]
 
@@ -16,10 +16,18 @@ class Hypotheses:
     """The hypotheses of a claim.
 
     relations hold exactly; a fact says that a matrix (block by block) is 'psd', 'pd', 'hurwitz', 'schur' or
-    'invertible'; ``inverses`` names for a letter the polynomial of which it is the two-sided inverse.
+    'invertible'; ``inverses`` names for a letter the polynomial of which it is the two-sided inverse; the scalars
+    in ``nonnegative`` are >= 0.
     """
 
     alphabet: Alphabet
     relations: Mapping[str, Poly] = field(default_factory=dict[str, Poly])
     facts: Mapping[str, Fact] = field(default_factory=dict[str, Fact])
     inverses: Mapping[str, Poly] = field(default_factory=dict[str, Poly])
+    nonnegative: frozenset[str] = frozenset()
+
+    @classmethod
+    def of(cls, context: Context, inverses: Mapping[Poly, str]) -> Hypotheses:
+        """Return the hypotheses that a reading stands for; ``inverses`` gives the letter by the polynomial."""
+        letters = {name: poly for poly, name in inverses.items()}
+        return cls(context.alphabet, context.relations, context.facts, letters, context.nonnegative)

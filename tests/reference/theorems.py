@@ -208,7 +208,12 @@ def two_solutions() -> Iterator[Theorem]:
     """Two solutions of one Riccati equation; the Hamiltonian matrix is similar to a triangular one."""
     s = Setting()
     A, C = s.matrix("A", "n", "n"), s.matrix("C", "m", "n")
-    P1, P2, W, V = s.symmetric("P1", "n"), s.symmetric("P2", "n"), s.symmetric("W", "n", "psd"), s.symmetric("V", "m", "pd")
+    P1, P2, W, V = (
+        s.symmetric("P1", "n"),
+        s.symmetric("P2", "n"),
+        s.symmetric("W", "n", "psd"),
+        s.symmetric("V", "m", "pd"),
+    )
     Vi = s.inverse("Vi", V)
     for name, P in (("riccati 1", P1), ("riccati 2", P2)):
         s.assume(name, A * P + P * A.T + W - P * C.T * Vi * C * P)
@@ -285,7 +290,12 @@ def discrete_reduction() -> Iterator[Theorem]:
     reduced = moved * P * moved.T + Q - S * Ri * S.T - moved * P * C.T * Si * C * P * moved.T
     yield theorem("cross-covariance moved into A and Q", step - reduced)
     s = Setting()
-    A, C, Q, R = s.matrix("A", "n", "n"), s.matrix("C", "m", "n"), s.symmetric("Q", "n", "psd"), s.symmetric("R", "m", "pd")
+    A, C, Q, R = (
+        s.matrix("A", "n", "n"),
+        s.matrix("C", "m", "n"),
+        s.symmetric("Q", "n", "psd"),
+        s.symmetric("R", "m", "pd"),
+    )
     P1, P2 = s.symmetric("P1", "n", "psd"), s.symmetric("P2", "n", "psd")
     S1, S2 = s.inverse("S1", C * P1 * C.T + R), s.inverse("S2", C * P2 * C.T + R)
 
