@@ -1,0 +1,117 @@
+"""Terms and equations as SymPy expressions of matrix symbols.
+
+Operators without a counterpart on matrix expressions (d/dt, E[.], integrals) become one symbol that prints as they do.
+SymPy is where the formula may be used further; it has no part in proving it.
+"""
+
+from __future__ import annotations
+
+from functools import reduce
+from operator import mul
+from typing import Any
+
+from derive.errors import InputError
+from derive.latex import latex
+from derive.terms import (
+    Block,
+    Equation,
+    Identity,
+    Inverse,
+    Neg,
+    Number,
+    Product,
+    Sum,
+    Symbol,
+    Term,
+    Trace,
+    Transpose,
+    Zero,
+)
+
+__all__ = ["to_sympy"]
+
+NOTHING = ("", "")  # the shape of a bare zero
+
+
+def to_sympy(statement: Term | Equation) -> Any:
+    """Return a SymPy matrix expression, or Eq(lhs, rhs) that is not evaluated.
+
+    Raises:
+        InputError: an inequality, since SymPy has no order of symmetric matrices.
+    """
+    import sympy
+
+    if isinstance(statement, Term):
+        return _matrix(statement, shape(statement))
+    if statement.relation not in ("=", ":="):
+        raise InputError(f"{latex(statement)}: expected an equation, got the relation {statement.relation}")
+    wanted = next((s for s in map(shape, (statement.lhs, statement.rhs)) if s != NOTHING), NOTHING)
+    return sympy.Eq(_matrix(statement.lhs, wanted), _matrix(statement.rhs, wanted), evaluate=False)
+
+
+def shape(term: Term) -> tuple[str, str]:
+    """Return the names of the dimensions of a term; blocks are counted like 'n+l', a bare zero has none."""
+    match term:
+        case Symbol(rows=rows, cols=cols) | Zero(rows, cols):
+            return rows, cols
+        case Identity(size):
+            return size, size
+        case Transpose(body) | Inverse(body):
+            return _flipped(shape(body))
+        case Sum(addends):
+            return next((s for s in map(shape, addends) if s != NOTHING), NOTHING)
+        case Product(factors):
+            shapes = [s for s in map(shape, factors) if s != NOTHING]
+            return (shapes[0][0], shapes[-1][1]) if shapes else NOTHING
+        case Block(rows):
+            return "+".join(shape(row[0])[0] for row in rows), "+".join(shape(t)[1] for t in rows[0])
+        case Trace() | Number():
+            return NOTHING
+        case _:
+            return next(map(shape, term.children()), NOTHING)
+
+
+def _flipped(pair: tuple[str, str]) -> tuple[str, str]:
+    return pair[1], pair[0]
+
+
+def _matrix(term: Term, wanted: tuple[str, str]) -> Any:
+    import sympy
+
+    match term:
+        case Symbol(scalar=True):
+            return sympy.Symbol(latex(term))
+        case Number(value):
+            return sympy.Rational(value.numerator, value.denominator)
+        case Identity(size):
+            return sympy.Identity(_size(size))
+        case Zero(rows, cols):
+            return (
+                sympy.ZeroMatrix(*map(_size, (rows, cols) if rows else wanted)) if wanted != NOTHING else sympy.S.Zero
+            )
+        case Neg(body):
+            return -_matrix(body, wanted)
+        case Sum(addends):
+            return reduce(lambda a, b: a + b, (_matrix(a, wanted) for a in addends))
+        case Product(factors):
+            return reduce(mul, (_matrix(f, shape(f)) for f in factors))
+        case Transpose(body):
+            return _matrix(body, _flipped(wanted)).T
+        case Inverse(body):
+            return _matrix(body, _flipped(wanted)).I
+        case Trace(body):
+            return sympy.Trace(_matrix(body, shape(body)))
+        case Block(rows):
+            return sympy.BlockMatrix([[_matrix(t, shape(t)) for t in row] for row in rows])
+        case _:
+            return sympy.MatrixSymbol(latex(term), *map(_size, shape(term)))
+
+
+def _size(name: str) -> Any:
+    import sympy
+
+    numbers = [
+        sympy.Integer(part) if part.isdigit() else sympy.Symbol(part, integer=True, positive=True)
+        for part in name.split("+")
+    ]
+    return reduce(lambda a, b: a + b, numbers)
