@@ -1,0 +1,238 @@
+"""The Luenberger observer over an infinite horizon: Riccati equation, gain, and why they are optimal."""
+
+from __future__ import annotations
+
+from derive.context import Theory
+from derive.terms import Equation, Expect, Glyph, Identity, Image, Zero, block
+from derive.theory import luenberger_errata as errata
+from derive.theory.builder import Builder, SquareOf
+from derive.theory.luenberger_errata import SOURCE
+from derive.theory.luenberger_formulas import (
+    any_gain,
+    covariance,
+    gain,
+    innovation,
+    optimal_gain,
+    riccati_step,
+    riccati_step_with_cross,
+)
+
+LIMIT = "limit"
+
+
+def declare(t: Theory) -> None:
+    """Declare the steady state: constant noise, limits of covariance and gain, another gain, another solution."""
+    s = t.symbols
+    A, C = s["A"], s["C"]
+    Q = covariance(t, "Q", "n", Glyph("Q"), "covariance of the process noise")
+    R = covariance(t, "R", "l", Glyph("R"), "covariance of the measurement noise")
+    S = t.matrix("S", "n", "l", meaning="cross-covariance", unit="[state] [output]")
+    P = covariance(t, "P", "n", Glyph("P"), "steady error covariance")
+    L = gain(t, "L", Glyph("L"), "steady optimal gain")
+    for constant in (Q, R, S):
+        t.assume(f"constant {constant.name}", s[f"{constant.name}_{{k-1}}"], "=", constant, "the noise is stationary")
+    t.assume("S = 0", S, "=", Zero("n", "l"), "process and measurement noise are uncorrelated")
+    t.assume("Q >= 0", Q, "⪰", text="a covariance")
+    t.assume("R > 0", R, "≻", text="every output is noisy")
+    t.assume("P >= 0", P, "⪰", text="a covariance")
+    t.assume("steady joint noise", block([[Q, S], [S.T, R]]), "⪰", text="a joint covariance")
+    t.inverse("Sigma^-1", innovation(C, P, R), "l", symmetric=True, because="steady innovation covariance")
+    old = tuple(s[f"{k}_{{k-1}}"] for k in "PQRS")
+    images = {f"{x.name}_{{k-1}}": x for x in (P, Q, R, S)}
+    t.maps[LIMIT] = {**images, "P_k": P, "L_k": L, "L_k*": L, "Sigma_k^-1": t.symbols["Sigma^-1"]}
+    t.define("steady covariance", P, Image(LIMIT, riccati_step_with_cross(A, C, *old)))
+    t.define("limit of the gain", L, Image(LIMIT, optimal_gain(A, C, old[0], old[2], old[3])))
+    t.fact("A - L C Schur", "schur", A - L * C, "the steady covariance is the stabilising solution", case=True)
+    _declare_others(t)
+
+
+def _declare_others(t: Theory) -> None:
+    """Declare a free steady gain with its covariance, another solution, and two covariances of one recursion."""
+    A, C, Q, R, S = (t.symbols[k] for k in ("A", "C", "Q", "R", "S"))
+    free = gain(t, "L~", Glyph("L", accent="tilde"), "another steady gain")
+    loose = covariance(t, "P~", "n", Glyph("P", accent="tilde"), "covariance of another gain")
+    t.fact("A - L~ C Schur", "schur", A - free * C, "the other gain stabilises too")
+    t.define("covariance of another gain", loose, any_gain(A, C, free, loose, Q, R, S))
+    for name, sub, sup, meaning in (
+        ("o", "", "∘", "another solution"),
+        ("1", "1", "", "one covariance"),
+        ("2", "2", "", "another covariance"),
+    ):
+        P = covariance(t, f"P_{name}", "n", Glyph("P", sub=sub, sup=sup), meaning)
+        L = gain(t, f"L_{name}", Glyph("L", sub=sub, sup=sup), f"optimal gain of {meaning}")
+        t.assume(f"P_{name} >= 0", P, "⪰", text="a covariance")
+        because = f"innovation covariance of P_{name}"
+        t.inverse(f"Sigma_{name}^-1", innovation(C, P, R), "l", symmetric=True, because=because)
+        t.define(f"L_{name}", L, optimal_gain(A, C, P, R, S))
+    other = t.symbols["P_o"]
+    t.define("another solution", other, riccati_step_with_cross(A, C, other, Q, R, S))
+    t.assume("P_1 >= P_2", t.symbols["P_1"], "⪰", t.symbols["P_2"], "the one covariance is at least the other")
+
+
+def derive(b: Builder) -> None:
+    """Derive the Riccati equation (5), the gain, and their optimality."""
+    _derive_limit(b)
+    _derive_optimality(b)
+    _derive_monotonicity(b)
+
+
+def _derive_limit(b: Builder) -> None:
+    s = b.theory.symbols
+    A, C, P, L, Q, R, S = (s[k] for k in ("A", "C", "P", "L", "Q", "R", "S"))
+    b.heading("Infinite horizon")
+    b.say("If the noise is stationary,")
+    b.given("constant Q", "constant R", "constant S")
+    b.say("so that")
+    for constant, noise in ((Q, s["w_{k-1}"]), (R, s["v_{k-1}"])):
+        b.state(
+            f"stationary {constant.name}",
+            Equation(constant, "=", Expect(noise * noise.T)),
+            "at every time",
+            [f"constant {constant.name}"],
+            number="u2",
+            source=SOURCE,
+            lemma=False,
+        )
+    b.say(
+        "and if the covariance tends to a limit ",
+        P,
+        ", then the limit is a fixed point of the recursion. Its innovation covariance,",
+    )
+    b.given("P >= 0", "R > 0")
+    b.positive(
+        "steady innovation covariance",
+        Equation(innovation(C, P, R), "≻", Zero("", "")),
+        "a congruence plus a positive matrix",
+        [SquareOf(C, "P >= 0"), SquareOf(Identity("l"), "R > 0")],
+        strict=(1, Identity("l")),
+    )
+    b.say(
+        "has an inverse. So the limit, which drops the indices, may be taken on both sides of the recursion and of the "
+        "gain:"
+    )
+    b.given("steady covariance", "limit of the gain")
+    chain = b.chain(P)
+    chain.to(riccati_step_with_cross(A, C, P, Q, R, S), "limit of the recursion", ["steady covariance"])
+    chain.close("Riccati equation with cross-covariance")
+    b.given("S = 0")
+    b.state(
+        "Riccati equation",
+        Equation(P, "=", riccati_step(A, C, P, Q, R)),
+        "no cross-covariance",
+        ["Riccati equation with cross-covariance", "S = 0"],
+        number="5",
+        source=SOURCE,
+    )
+    b.state(
+        "steady gain with cross-covariance",
+        Equation(L, "=", optimal_gain(A, C, P, R, S)),
+        "limit of the gain",
+        ["limit of the gain"],
+    )
+    b.state(
+        "steady gain",
+        Equation(L, "=", optimal_gain(A, C, P, R)),
+        "no cross-covariance",
+        ["steady gain with cross-covariance", "S = 0"],
+        number="u3",
+        source=SOURCE,
+    )
+    errata.steady_gain(b)
+
+
+def _derive_optimality(b: Builder) -> None:
+    s = b.theory.symbols
+    A, C, P, L, Q, R, S = (s[k] for k in ("A", "C", "P", "L", "Q", "R", "S"))
+    free, loose, other, other_gain = (s[k] for k in ("L~", "P~", "P_o", "L_o"))
+    steady = ["Riccati equation with cross-covariance", "steady gain with cross-covariance", "Sigma^-1"]
+    b.heading("The steady gain is optimal")
+    b.say("Written with the gain, the Riccati equation is the covariance equation of the closed loop,")
+    b.state("closed loop", Equation(P, "=", any_gain(A, C, L, P, Q, R, S)), "insert the gain", steady)
+    b.state(
+        "Stein equation",
+        Equation(P, "=", any_gain(A, C, L, P, Q, R)),
+        "no cross-covariance",
+        ["closed loop", "S = 0"],
+        lemma=False,
+    )
+    b.say("Take any other gain ", free, " for which ", A - free * C, " is Schur. Its steady covariance solves")
+    b.given("covariance of another gain")
+    sigma = innovation(C, P, R)
+    b.positive(
+        "steady square",
+        Equation((free - L) * sigma * (free - L).T, "⪰", Zero("", "")),
+        "a congruence of a positive matrix",
+        [SquareOf(free - L, "steady innovation covariance")],
+    )
+    b.compare(
+        "steady optimum",
+        "stein",
+        Equation(loose, "⪰", P),
+        "the difference solves a Stein equation that the square drives, and its matrix is Schur",
+        A - free * C,
+        "A - L~ C Schur",
+        "steady square",
+        ["covariance of another gain", *steady],
+    )
+    b.say("If ", A - L * C, " is Schur, ", L, " is one of these gains and ", P, " is its covariance: the minimum.")
+    b.say("The same comparison singles out one solution. Let ", other, " be another one,")
+    b.given("P_o >= 0")
+    b.positive(
+        "innovation covariance of P_o",
+        Equation(innovation(C, other, R), "≻", Zero("", "")),
+        "as before",
+        [SquareOf(C, "P_o >= 0"), SquareOf(Identity("l"), "R > 0")],
+        strict=(1, Identity("l")),
+    )
+    b.given("another solution", "L_o")
+    b.positive(
+        "square of the other solution",
+        Equation((L - other_gain) * innovation(C, other, R) * (L - other_gain).T, "⪰", Zero("", "")),
+        "a congruence of a positive matrix",
+        [SquareOf(L - other_gain, "innovation covariance of P_o")],
+    )
+    b.compare(
+        "largest solution",
+        "stein",
+        Equation(P, "⪰", other),
+        "the stabilising solution is at least as large as every other one, so there is only one",
+        A - L * C,
+        "A - L C Schur",
+        "square of the other solution",
+        ["closed loop", "another solution", "L_o", "Sigma_o^-1"],
+    )
+    errata.roots(b)
+
+
+def _derive_monotonicity(b: Builder) -> None:
+    s = b.theory.symbols
+    A, C, Q, R, S = (s[k] for k in ("A", "C", "Q", "R", "S"))
+    (P_1, L_1), (P_2, L_2) = ((s[f"P_{i}"], s[f"L_{i}"]) for i in "12")
+    b.heading("The recursion keeps the order")
+    b.say("Start the recursion from two covariances, and compare what one step makes of them.")
+    for i, P in (("1", P_1), ("2", P_2)):
+        b.positive(
+            f"innovation covariance of P_{i}",
+            Equation(innovation(C, P, R), "≻", Zero("", "")),
+            "as before",
+            [SquareOf(C, f"P_{i} >= 0"), SquareOf(Identity("l"), "R > 0")],
+            strict=(1, Identity("l")),
+        )
+    b.given("L_1", "L_2")
+    difference = riccati_step_with_cross(A, C, P_1, Q, R, S) - riccati_step_with_cross(A, C, P_2, Q, R, S)
+    inverses = ["L_1", "L_2", "Sigma_1^-1", "Sigma_2^-1"]
+    b.state(
+        "difference of two steps",
+        Equation(difference, "=", (A - L_1 * C) * (P_1 - P_2) * (A - L_2 * C).T),
+        "the noise cancels",
+        inverses,
+        lemma=False,
+    )
+    b.given("P_1 >= P_2")
+    b.positive(
+        "monotone step",
+        Equation(riccati_step_with_cross(A, C, P_1, Q, R, S), "⪰", riccati_step_with_cross(A, C, P_2, Q, R, S)),
+        "a congruence of the difference and a square: more uncertainty before is not less after",
+        [SquareOf(A - L_1 * C, "P_1 >= P_2"), SquareOf(L_1 - L_2, "innovation covariance of P_2")],
+        inverses,
+    )
