@@ -179,6 +179,9 @@ def replay_uniqueness(proof: Uniqueness, claim: Poly, context: Context) -> None:
     """Accept f - g = 0 by uniqueness of the solution of a linear differential equation, or raise Rejected."""
     if proof.claim != claim:
         raise Rejected("the certificate belongs to another claim")
+    noise = context.random | context.uncentred
+    if any(m or any(parts(a)[0] in noise for a in w) for side in (proof.left, proof.right) for m, w in side.terms):
+        raise Rejected("the coefficients of the linear equation must be continuous in time")
     for equation, terms in zip(
         (rate_equation(claim, proof.left, proof.right, context), at_start(claim, context)),
         (proof.rate_terms, proof.initial_terms),
