@@ -1,0 +1,1 @@
+"""Tests, reference results and benchmarks."""

@@ -1,0 +1,1 @@
+"""Results known from elsewhere, and the claims that the provers are measured on."""
