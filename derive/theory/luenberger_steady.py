@@ -29,8 +29,9 @@ def declare(t: Theory) -> None:
     S = t.matrix("S", "n", "l", meaning="cross-covariance", unit="[state] [output]")
     P = covariance(t, "P", "n", Glyph("P"), "steady error covariance")
     L = gain(t, "L", Glyph("L"), "steady optimal gain")
-    for constant in (Q, R, S):
-        t.assume(f"constant {constant.name}", s[f"{constant.name}_{{k-1}}"], "=", constant, "the noise is stationary")
+    w, v = s["w_{k-1}"], s["v_{k-1}"]
+    for constant, one, two in ((Q, w, w), (R, v, v), (S, w, v)):
+        t.assume(f"constant {constant.name}", Expect(one * two.T), "=", constant, "the same at every time")
     t.assume("S = 0", S, "=", Zero("n", "l"), "process and measurement noise are uncorrelated")
     t.assume("Q >= 0", Q, "⪰", text="a covariance")
     t.assume("R > 0", R, "≻", text="every output is noisy")
@@ -81,20 +82,9 @@ def _derive_limit(b: Builder) -> None:
     A, C, P, L, Q, R, S = (s[k] for k in ("A", "C", "P", "L", "Q", "R", "S"))
     b.heading("Infinite horizon")
     b.say("If the noise is stationary,")
-    b.given("constant Q", "constant R", "constant S")
-    b.say("so that")
-    for constant, noise in ((Q, s["w_{k-1}"]), (R, s["v_{k-1}"])):
-        b.state(
-            f"stationary {constant.name}",
-            Equation(constant, "=", Expect(noise * noise.T)),
-            "at every time",
-            [f"constant {constant.name}"],
-            number="u2",
-            source=SOURCE,
-            lemma=False,
-        )
+    b.given("constant Q", "constant R", "constant S", numbers=("u2", "u2"), source=SOURCE)
     b.say(
-        "and if the covariance tends to a limit ",
+        "and the covariance tends to a limit ",
         P,
         ", then the limit is a fixed point of the recursion. Its innovation covariance,",
     )
