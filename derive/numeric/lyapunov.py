@@ -28,6 +28,8 @@ def solve_lyapunov(F: Matrix, Q: Matrix, time: Time) -> Matrix:
 
     Source: R. A. Smith, Matrix equation XA + BX = C, SIAM J. Appl. Math. 16 (1968) 198-201.
     """
+    if len(F) == 0:
+        return np.zeros((0, 0))
     if time == "continuous":
         from scipy.linalg import solve_continuous_lyapunov
 
