@@ -221,9 +221,10 @@ class Theory:
         )
         reading = Reading(context)
         for name, images in self.maps.items():
-            lowered = {letter: lower(image, reading)[0][0] for letter, image in images.items()}
-            for letter, image in lowered.items():
-                if self.symbols[letter].symmetric and context.alphabet.transpose(image) != image:
+            lowered = {self.symbols[letter].letter: lower(image, reading)[0][0] for letter, image in images.items()}
+            for letter in images:
+                found = lowered[self.symbols[letter].letter]
+                if self.symbols[letter].symmetric and context.alphabet.transpose(found) != found:
                     raise Rejected(f"the map {name} sends the symmetric {letter} to a matrix that is not")
             reading = replace(reading, maps={**reading.maps, name: lowered})
         return self.settle(reading)

@@ -27,6 +27,8 @@ THEORIES = {
     "luenberger-dt": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
     "duality": "derive.theory.duality",
+    "lqr-dt": "derive.theory.regulator:discrete",
+    "lqr-ct": "derive.theory.regulator:continuous",
 }
 
 
@@ -39,7 +41,8 @@ def lecture(key: str) -> Lecture:
 @cache
 def theory(key: str) -> Theory:
     """Return an installed theory by its key."""
-    return import_module(_find(key, THEORIES, "theory")).theory()
+    module, _, function = _find(key, THEORIES, "theory").partition(":")
+    return getattr(import_module(module), function or "theory")()
 
 
 def _find(key: str, table: dict[str, str], kind: str) -> str:

@@ -128,8 +128,8 @@ class Builder:
             check(step, self.reading, self.steps)
         except Rejected as error:
             raise NotDerived(f"{self.key}: step {step.name!r}: {error}") from error
-        if step.name in self.steps:
-            raise NotDerived(f"{self.key}: two steps are called {step.name!r}")
+        if step.name in self.steps or step.name in self.theory.declared:
+            raise NotDerived(f"{self.key}: the name {step.name!r} is taken")
         self.steps[step.name] = step
         self.reading = learn(self.reading, self.theory, step)
         return step
