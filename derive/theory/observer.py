@@ -10,7 +10,7 @@ from fractions import Fraction
 from functools import cache
 
 from derive.context import Theory
-from derive.derivation import Evidence, Lecture
+from derive.derivation import Evidence, Lecture, Step
 from derive.terms import (
     Delta,
     Dot,
@@ -159,14 +159,29 @@ def closed_form(s: dict[str, Symbol], L: Term, P: Term) -> Term:
 def lecture() -> Lecture:
     """Return the lecture, every step proved when it is built."""
     b = Builder(theory(), KEY, "The Kalman filter as an observer", (SOURCE,))
-    error_dynamics(b)
-    noise_correlation(b)
-    error_covariance(b)
-    optimal_gain(b)
+    _derive_error(b)
+    _derive_correlation(b)
+    _derive_covariance(b)
+    _derive_gain(b)
     return b.lecture()
 
 
-def error_dynamics(b: Builder) -> None:
+def error_dynamics() -> Step:
+    """Return the proved error dynamics (31.10)."""
+    return lecture().step("error dynamics")
+
+
+def error_covariance() -> Step:
+    """Return the proved Lyapunov equation of the error covariance."""
+    return lecture().step("Lyapunov equation")
+
+
+def gain() -> Step:
+    """Return the proof that no gain gives a smaller error covariance than L* = (P C' + N) R_e^-1."""
+    return lecture().step("optimal gain")
+
+
+def _derive_error(b: Builder) -> None:
     """Derive (31.10) by subtraction."""
     s = b.theory.symbols
     A, B, B_d, C, D_d, D_r, L = (s[k] for k in ("A", "B", "B_d", "C", "D_d", "D_r", "L"))
@@ -208,7 +223,7 @@ def error_dynamics(b: Builder) -> None:
     )
 
 
-def noise_correlation(b: Builder) -> None:
+def _derive_correlation(b: Builder) -> None:
     """Derive R_xixi and, for white noise, the intensity sigma_xi^2."""
     s = b.theory.symbols
     d, r, xi, R_xi, sigma = s["d"], s["r"], s["xi"], s["R_xixi"].at("t", "τ"), s["sigma2"]
@@ -312,7 +327,7 @@ def noise_correlation(b: Builder) -> None:
     )
 
 
-def error_covariance(b: Builder) -> None:
+def _derive_covariance(b: Builder) -> None:
     """Derive the Lyapunov equation of the error covariance."""
     s = b.theory.symbols
     e, xi, A_e, P_e, sigma, Phi = (s[k] for k in ("e", "xi", "A_e", "P_e", "sigma2", "Phi"))
@@ -387,7 +402,7 @@ def error_covariance(b: Builder) -> None:
     )
 
 
-def optimal_gain(b: Builder) -> None:
+def _derive_gain(b: Builder) -> None:
     """Derive the optimal gain: completing the square, comparison, and the same from the trace's gradient."""
     s = b.theory.symbols
     A, C, L, Ls, P, P_e, N, W, R_e = (s[k] for k in ("A", "C", "L", "L*", "P", "P_e", "N", "W", "R_e"))
