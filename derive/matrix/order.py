@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import pairwise
 
-from derive.kernel import Alphabet, Poly, Scalars, Word, bound, parts, times_of
+from derive.kernel import Alphabet, Poly, Scalars, Word, parts, times_of
 
 __all__ = ["Codec", "Encoded", "Monomial", "Number", "divide", "join", "weigh"]
 
@@ -90,10 +90,6 @@ class Codec:
     def times(self, m: str, w: str) -> set[str]:
         """Return the times that occur in a monomial, bound or free."""
         return times_of(self.scalars(m), self.word(w))
-
-    def bound(self, m: str) -> set[str]:
-        """Return the variables of integration of encoded scalars."""
-        return bound(self.scalars(m))
 
     def rows(self, w: str) -> str:
         """Return the row dimension of a word that is not empty."""

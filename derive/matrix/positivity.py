@@ -152,9 +152,10 @@ def _take_out(claim: Grid, facts: Mapping[str, Fact], context: Context) -> tuple
     rest = claim
     for name, fact in facts.items():
         core = fact.matrix[0][0]
-        lead = min((k for k in core.terms if not k[0]), key=lambda k: (len(k[1]), k[1]), default=None)
-        if lead is None or core.terms[lead] <= 0:
+        positive = [k for k, c in core.terms.items() if c > 0 and not k[0]]
+        if not positive:
             continue
+        lead = min(positive, key=lambda k: (len(k[1]), k[1]))
         for scalars, form in _forms(rest, lead[1], context).items():
             found = _squares(claim, name, core, scalars, {p: c / core.terms[lead] for p, c in form.items()})
             if found is None:

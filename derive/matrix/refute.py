@@ -87,13 +87,9 @@ class Attempt:
         """Complete an instance by the rules; tell whether the hypotheses hold there and the claim does not."""
         if not all(rule.apply(instance) for rule in self.plan.rules):
             return False
-        refuted = self._refuted(instance)
-        if not refuted and self.survived >= ENOUGH:
-            return False
-        if not self._admissible(instance):
-            return False
-        self.survived += not refuted
-        return refuted
+        refuted, admissible = self._refuted(instance), self._admissible(instance)
+        self.survived += admissible and not refuted
+        return admissible and refuted
 
     def _admissible(self, instance: Instance) -> bool:
         if any(instance.scalars.get(s, 0) < 0 for s in self.problem.nonnegative):

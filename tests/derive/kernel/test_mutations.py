@@ -46,7 +46,7 @@ def edits(terms: tuple[Term, ...], theorem: Theorem, generator: random.Random):
     """Iterate over changed lists of addends."""
     i = generator.randrange(len(terms))
     t, rest = terms[i], terms[:i] + terms[i + 1 :]
-    letters = [name for name in theorem.hypotheses.alphabet.letters]
+    letters = list(theorem.hypotheses.alphabet.letters)
     others = [name for name in theorem.hypotheses.relations if name != t.relation]
     letter = generator.choice(letters) + generator.choice(("", "'"))
     swapped = t.left[:-2] + t.left[-2:][::-1]

@@ -67,10 +67,7 @@ CONTEXT = Context(
     nonnegative=frozenset({"a", "∫τ"}),
 )
 CLAIM = ((square((1, "K P K'"), (2, "B Q B'")),),)
-SQUARES = (
-    Square(Fraction(1), (), ((letter("A"),),), "P"),
-    Square(Fraction(2), (), ((letter("B"),),), "Q"),
-)
+SQUARES = (Square(Fraction(1), (), ((letter("A"),),), "P"), Square(Fraction(2), (), ((letter("B"),),), "Q"))
 # K P K' - A P A' = (K - A) P K' + A P (K - A)'
 TERMS = (((term("same", "", "P K'"), Term(Fraction(1), (), ("A", "P"), "same", True, ())),),)
 PROOF = Positivity(CLAIM, SQUARES, TERMS, 0, letter("Ai"), (term("inverse"),))
