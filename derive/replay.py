@@ -172,11 +172,10 @@ def verify_certificate(data: Any, path: str) -> Report:
 
 def taught(theory: Theory) -> Reading:
     """Return the theory's reading, extended by the lemmas of the installed lectures over it, each replayed first."""
-    from derive.theory import LECTURES, THEORIES, lecture
+    from derive.theory import LECTURES, lecture
 
     reading = theory.reading()
-    for key in (key for key, module in LECTURES.items() if module == THEORIES[theory.key]):
-        steps = lecture(key).steps
+    for steps in (lecture(key).steps for key in LECTURES if lecture(key).theory.key == theory.key):
         accepted = {o.step for o in verify(theory, steps) if o.accepted}
         for step in (s for s in steps if s.name in accepted):
             reading = learn(reading, theory, step)
