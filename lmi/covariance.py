@@ -112,10 +112,10 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
 
 
 def covariance_error(plant: Plant, P: Matrix) -> Matrix | None:
-    """Return what P (n, n) lacks to the optimal covariance, by Newton steps in balanced coordinates, or None."""
-    scaling = balanced(plant)
-    P_z = np.linalg.solve(scaling.T, np.linalg.solve(scaling.T, P).T)
-    error = newton_error(scaled_plant(plant, scaling), P_z)
+    """Return what P (n, n) lacks to the optimal covariance, by Newton steps in the coordinates of P, or None."""
+    common = balanced(plant)
+    scaling = recentred(common, common.scaled_covariance(P), 0.0)
+    error = newton_error(scaled_plant(plant, scaling), scaling.scaled_covariance(P))
     return None if error is None else scaling.covariance(error)
 
 

@@ -1,7 +1,7 @@
 """The independent ways to the optimal error covariance, each run on a plant and reported in one form."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,9 +14,10 @@ from lmi.programs.h2 import h2
 from lmi.programs.optimal_covariance import optimal_covariance
 from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
 from lmi.programs.program import Program
+from lmi.residual import riccati_residual
 from lmi.solve import Status
 
-__all__ = ["ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_of"]
+__all__ = ["ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_of", "output_rounding"]
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -34,7 +35,6 @@ class Answer:
         gain: observer gain (n, l), or None.
         output: tr(C P C' V^-1) [1/s], in discrete time ln det(C P C' + V), or None.
         error: estimated absolute error, of tr(M P) when there is P, else of the output; infinite when P solves nothing.
-        unique: whether the route determines P itself, not only tr(M P).
         boundary_modes: modes that a strong solution leaves on the boundary of stability.
     """
 
@@ -43,7 +43,6 @@ class Answer:
     gain: Matrix | None = None
     output: float | None = None
     error: float = np.inf
-    unique: bool = True
     boundary_modes: tuple[complex, ...] = ()
 
 
@@ -70,6 +69,13 @@ def output_of(plant: Plant, P: Matrix) -> float:
     return float(np.linalg.slogdet(output + plant.V)[1])
 
 
+def output_rounding(plant: Plant, P: Matrix) -> float:
+    """Bound what rounding P in double precision does to `output_of`, where C P C' is small by cancellation."""
+    size = np.abs(plant.C) @ np.abs(P) @ np.abs(plant.C).T
+    innovation = plant.V if plant.is_continuous else plant.C @ P @ plant.C.T + plant.V
+    return float(plant.n * np.finfo(float).eps * np.sum(np.abs(np.linalg.inv(innovation)) * size))
+
+
 def nuclear_norm(plant: Plant, D: Matrix) -> float:
     """Return the sum of |eigenvalues| of M^(1/2) D M^(1/2): |tr(M D)| without the cancellation between its signs."""
     sizes, directions = np.linalg.eigh(plant.M)
@@ -90,10 +96,12 @@ def _riccati(plant: Plant) -> Answer:
     solution = solve_riccati(plant)
     if solution.status == "failed":
         return Answer("failed: no stabilising solution of the Riccati equation was reached")
-    P = solution.P
-    error = solution.residual * abs(cost_of(plant, P))
+    P, gain = solution.P, solution.gain
+    if solution.status == "stabilising":
+        return _covariance(plant, "stabilising", P, gain, covariance_error(plant, P))
     modes = tuple(complex(mode) for mode in solution.boundary_modes)
-    return Answer(solution.status, P, solution.gain, output_of(plant, P), error, boundary_modes=modes)
+    error = solution.residual * abs(cost_of(plant, P))
+    return Answer("strong", P, gain, output_of(plant, P), error, modes)
 
 
 def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
@@ -114,8 +122,12 @@ def _nlp(plant: Plant) -> Answer:
     from derive.numeric.gain_nlp import optimise_gain
 
     result = optimise_gain(plant)
-    answer = _covariance(plant, result.status, result.P, result.gain, covariance_error(plant, result.P))
-    return replace(answer, unique=bool(np.linalg.eigvalsh(plant.M)[0] > 0))
+    if result.status == "failed":
+        return Answer("failed: no stabilising gain was found")
+    if result.status == "strong":
+        error = result.stationarity * abs(cost_of(plant, result.P))
+        return Answer("strong", result.P, result.gain, output_of(plant, result.P), error)
+    return _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
 
 
 def _covariance(plant: Plant, status: str, P: Matrix, gain: Matrix, error: Matrix | None) -> Answer:
@@ -152,12 +164,15 @@ def _eigenvalue_error(plant: Plant, modes: NDArray[Any]) -> float:
 
 
 def _closed_form(plant: Plant) -> Answer:
-    from derive.numeric.scalar import scalar_covariance
+    from derive.numeric.scalar import solve_scalar
 
-    if plant.n > 1:
-        return Answer(f"not applicable: {plant.n} states, the closed form is for one")
-    P = scalar_covariance(plant)
-    return Answer("solved", P)
+    if (plant.n, plant.l) != (1, 1):
+        return Answer(f"not applicable: for one state and one output, not {plant.n} and {plant.l}")
+    solution = solve_scalar(plant)
+    P, gain = np.array([[solution.P]]), np.array([[solution.gain]])
+    error = riccati_residual(plant, P) * abs(cost_of(plant, P))
+    status = "strong" if solution.status == "strong" else "solved"
+    return Answer(status, P, gain, output_of(plant, P), error)
 
 
 _CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2")

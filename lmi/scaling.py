@@ -37,6 +37,11 @@ class Scaling:
         P = self.T @ P_z @ self.T.T
         return (P + P.T) / 2
 
+    def scaled_covariance(self, P: Matrix) -> Matrix:
+        """Return P_z = T^-1 P T^-T (n, n), the inverse of `covariance`."""
+        P_z = np.linalg.solve(self.T, np.linalg.solve(self.T, P).T)
+        return (P_z + P_z.T) / 2
+
     def gain(self, L_z: Matrix) -> Matrix:
         """Return L = sqrt(rate) T L_z R^-1 (n, l) in the plant's units."""
         return np.sqrt(self.rate) * np.linalg.solve(self.R.T, (self.T @ L_z).T).T
@@ -62,7 +67,8 @@ def balanced(plant: Plant) -> Scaling:
     C = np.linalg.solve(R, plant.C)
     hamiltonian = np.block([[plant.A, plant.W], [C.T @ C, -plant.A.T]])
     np.fill_diagonal(hamiltonian, 0.0)
-    _, (sizes, _) = matrix_balance(hamiltonian, permute=False, separate=True)
+    with np.errstate(invalid="ignore"):  # SciPy also casts the sizes to integers, for a permutation not asked for
+        _, (sizes, _) = matrix_balance(hamiltonian, permute=False, separate=True)
     exponents = np.round((np.log2(sizes[: plant.n]) - np.log2(sizes[plant.n :])) / 2)
     scaling = Scaling(np.diag(2.0**exponents), R, 1.0)
     return replace(scaling, rate=_rate(scaled_plant(plant, scaling)))
@@ -78,6 +84,8 @@ def recentred(scaling: Scaling, P_z: Matrix, uncertainty: float) -> Scaling:
     """
     sizes, directions = np.linalg.eigh(P_z)
     floor = max(FLOOR_RTOL * sizes[-1], uncertainty)
+    if not floor > 0:
+        return scaling
     return replace(scaling, T=scaling.T @ directions * np.sqrt(np.maximum(sizes, floor)))
 
 

@@ -1,7 +1,8 @@
 """One plant, every route to its optimal error covariance, one verdict."""
 
+import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from os import PathLike
 from time import perf_counter
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from derive.numeric.modes import format_mode
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
-from lmi.routes import ROUTES, Answer, RouteSpec, cost_of, output_of
+from lmi.routes import ROUTES, Answer, RouteSpec, cost_of, output_of, output_rounding
 from lmi.scaling import balanced
 
 __all__ = ["AGREEMENT", "TRUSTED", "Route", "Validation", "Verdict", "validate"]
@@ -26,7 +27,7 @@ TRUSTED = 1e-7
 """A route confirms only when the error that its own numbers admit is at most this, relative."""
 
 UNEXPLAINED = 10.0
-"""A route disagrees when it differs by more than this many times the error that its own numbers admit."""
+"""A route disagrees when it differs by more than this many times the errors that it and Riccati admit."""
 
 VANISHING = 1e-9
 """A result smaller than this, relative to the natural size of the plant's coordinates, is zero: differences are then
@@ -62,9 +63,11 @@ class Route:
         status: "solved", "stabilising", "strong", or what went wrong or does not apply, with the reason.
         relative_difference: against Riccati, in tr P and tr(M P) if it gives P, else in the output; None if nothing.
         residual: relative error that the route's own numbers admit, or None. For a covariance it is estimated by Newton
-            steps from it, for Riccati it is the residual of the equation, for the integral the quadrature's estimate.
+            steps from it, for the integral it is the quadrature's estimate.
         seconds: wall time.
         independent_of: names of the routes with which it shares no computation but the plant's data.
+        agrees: whether its result and Riccati's are both accurate, and equal.
+        disagrees: whether its result differs from Riccati's by more than the errors that both admit.
     """
 
     name: str
@@ -77,23 +80,13 @@ class Route:
     residual: float | None
     seconds: float
     independent_of: tuple[str, ...]
+    agrees: bool
+    disagrees: bool
 
     @property
     def trusted(self) -> bool:
         """Whether the route's own numbers show that its result is accurate."""
         return self.residual is not None and self.residual <= TRUSTED
-
-    @property
-    def agrees(self) -> bool:
-        """Whether the result is trusted and equals that of Riccati."""
-        return self.trusted and self.relative_difference is not None and self.relative_difference <= AGREEMENT
-
-    @property
-    def disagrees(self) -> bool:
-        """Whether the result differs from that of Riccati by more than its own error explains."""
-        if self.relative_difference is None or self.residual is None:
-            return False
-        return not self.relative_difference <= max(AGREEMENT, UNEXPLAINED * self.residual)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,7 +106,7 @@ class Validation:
         if any(route.disagrees for route in self.routes):
             return Verdict.DISAGREE
         riccati = self.routes[0]
-        if riccati.trusted and any(route.agrees and riccati.name in route.independent_of for route in self.routes):
+        if any(route.agrees and riccati.name in route.independent_of for route in self.routes):
             return Verdict.AGREE
         return Verdict.UNCONFIRMED
 
@@ -166,7 +159,7 @@ def _as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """Run a route; what goes wrong becomes its status."""
+    """Run a route; what goes wrong becomes its status, and warnings are left to the residual."""
 
     plant: Plant
     progress: Callable[[str], None]
@@ -177,7 +170,9 @@ class _Run:
         self.progress(spec.name)
         start = perf_counter()
         try:
-            answer = spec.run(self.plant)
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                answer = spec.run(self.plant)
         except NUMERICAL_ERRORS as error:
             answer = Answer(f"failed: {' '.join(str(error).split()) or type(error).__name__}")
         return answer, perf_counter() - start
@@ -211,14 +206,22 @@ class _Reference:
         if answer.P is not None:
             cost = abs(cost_of(self.plant, answer.P - riccati.P)) / self.cost_size
             trace = abs(float(np.trace(answer.P - riccati.P))) / self.trace_size
-            return max(cost, trace) if answer.unique else cost
+            return max(cost, trace)
         return None if answer.output is None else abs(answer.output - riccati.output) / self.output_size
 
     def residual(self, answer: Answer) -> float | None:
-        """Return the relative error that an answer admits."""
+        """Return the relative error that an answer admits; next to a boundary mode it is believed only when small."""
         if answer.P is None and answer.output is None:
             return None
-        return answer.error / (self.output_size if answer.P is None else self.cost_size)
+        error = answer.error / (self.output_size if answer.P is None else self.cost_size)
+        return error if error <= TRUSTED or not self.answer.boundary_modes else np.inf
+
+    def error(self, answer: Answer) -> float:
+        """Return the relative error of Riccati's result with which an answer is compared."""
+        error = self.residual(self.answer) or 0.0
+        if answer.P is not None or self.answer.P is None:
+            return error
+        return max(error, output_rounding(self.plant, self.answer.P) / self.output_size)
 
 
 def _output_excess(plant: Plant, P: Matrix) -> float:
@@ -232,35 +235,46 @@ def _size(value: float, natural: float) -> float:
 
 def _route(spec: RouteSpec, answer: Answer, seconds: float, reference: _Reference) -> Route:
     P, plant = answer.P, reference.plant
-    route = Route(
+    difference, residual = reference.difference(answer), reference.residual(answer)
+    agrees = disagrees = False
+    if difference is not None and residual is not None:
+        errors = max(residual, reference.error(answer))
+        agrees = errors <= TRUSTED and difference <= AGREEMENT
+        disagrees = not difference <= max(AGREEMENT, UNEXPLAINED * errors)
+    return Route(
         name=spec.name,
         trace=None if P is None else float(np.trace(P)),
         cost=None if P is None else cost_of(plant, P),
         output=answer.output,
         gain=answer.gain,
-        status=answer.status,
-        relative_difference=reference.difference(answer),
-        residual=reference.residual(answer),
+        status=_judged(answer, difference, residual, disagrees, reference.answer.boundary_modes),
+        relative_difference=difference,
+        residual=residual,
         seconds=seconds,
         independent_of=spec.independent_of,
+        agrees=agrees,
+        disagrees=disagrees,
     )
-    return replace(route, status=_judged(route, reference.answer.boundary_modes))
 
 
-def _judged(route: Route, boundary_modes: tuple[complex, ...]) -> str:
+def _judged(
+    answer: Answer,
+    difference: float | None,
+    residual: float | None,
+    disagrees: bool,
+    boundary_modes: tuple[complex, ...],
+) -> str:
     """Return the status of a route, in which a doubtful result is called so."""
-    if route.residual is None:
-        return route.status
-    if route.disagrees:
-        return f"disagrees: differs from riccati by {route.relative_difference:.1e}, more than its own error explains"
-    if route.trusted:
-        return route.status
-    modes = ", ".join(dict.fromkeys(format_mode(mode) for mode in boundary_modes))
-    if modes:
+    if disagrees:
+        return f"disagrees: differs from riccati by {difference:.1e}, more than the errors of both explain"
+    if residual is None or residual <= TRUSTED:
+        return answer.status
+    if boundary_modes:
+        modes = ", ".join(dict.fromkeys(format_mode(mode) for mode in boundary_modes))
         return f"not applicable: boundary mode {modes}, reached only in the limit"
-    if not np.isfinite(route.residual):
-        return f"inaccurate: its numbers solve nothing ({route.status})"
-    return f"inaccurate: its own numbers admit a relative error of {route.residual:.1e}"
+    if not np.isfinite(residual):
+        return f"inaccurate: its numbers solve nothing ({answer.status})"
+    return f"inaccurate: its own numbers admit a relative error of {residual:.1e}"
 
 
 def _route_dict(route: Route) -> dict[str, Any]:
