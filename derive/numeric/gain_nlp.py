@@ -123,7 +123,7 @@ def _plant_gain(plant: Plant, form: NormalForm, K: Matrix) -> Matrix:
 
 def _covariance(form: NormalForm, K: Matrix) -> Matrix:
     """Return P for a gain, not a number when F - K C is not stable."""
-    F, C, W = form.double()
+    F, C, W = form.uncorrelated()
     if np.isfinite(K).all() and np.all(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) < 0):
         return error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
     return np.full(F.shape, np.nan)
@@ -131,7 +131,7 @@ def _covariance(form: NormalForm, K: Matrix) -> Matrix:
 
 def _stationarity(form: NormalForm, K: Matrix, P: Matrix) -> float:
     """Return |K - P C'|, in discrete time |K (C P C' + I) - F P C'|, relative: 0 where the gradient vanishes."""
-    F, C, _ = form.double()
+    F, C, _ = form.uncorrelated()
     first, second = (K, P @ C.T) if form.time == "continuous" else (K @ (C @ P @ C.T + np.eye(len(C))), F @ P @ C.T)
     size = np.linalg.norm(first) + np.linalg.norm(second)
     return float(np.linalg.norm(first - second) / size) if size else 0.0
@@ -139,7 +139,7 @@ def _stationarity(form: NormalForm, K: Matrix, P: Matrix) -> float:
 
 def _optimal(form: NormalForm) -> tuple[Matrix, int]:
     """Return the best gain, and the iterations of all rounds."""
-    F, C, W = form.double()
+    F, C, W = form.uncorrelated()
     K, iterations = stabilising_gain(F, C, form.time), 0
     P = _covariance(form, K)
     for _ in range(ROUNDS):

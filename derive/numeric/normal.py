@@ -1,4 +1,4 @@
-"""The normal form of a plant: unit measurement noise, no cross term, balanced states. P in it is P scaled, no more."""
+"""The normal form of a plant: unit measurement noise and balanced states, with and without its cross term."""
 
 from dataclasses import dataclass, replace
 
@@ -14,61 +14,57 @@ __all__ = ["NormalForm", "normal_form"]
 
 @dataclass(frozen=True, eq=False)
 class NormalForm:
-    """A plant with V = I and N = 0, whose Riccati equation has the solution of the original one, scaled.
-
-    Continuous: F P + P F' + W - P C'C P = 0. Discrete: F P F' - P + W - F P C' (C P C' + I)^-1 C P F' = 0.
+    """A plant with V = I and scaled states, in extended precision.
 
     Attributes:
-        F: A - N V^-1 C (n, n), scaled, in extended precision like C and W.
-        C: V^(-1/2) C (l, n), scaled.
-        W: W - N V^-1 N' (n, n), scaled.
+        A: state matrix (n, n).
+        C: output matrix (l, n), V^(-1/2) times the original one.
+        W: process noise (n, n).
+        N: cross term (n, l).
         time: "continuous" or "discrete".
         scaling: powers of two t (n,) with x = t x_scaled, so that P = t P_scaled t'.
-        noise_size: Frobenius norm of the scaled W before the cross term went, to which rounding in W is relative.
     """
 
-    F: Matrix
+    A: Matrix
     C: Matrix
     W: Matrix
+    N: Matrix
     time: Time
     scaling: Matrix
-    noise_size: float
 
-    def double(self) -> tuple[Matrix, Matrix, Matrix]:
-        """Return F, C, W in double precision."""
-        return self.F.astype(float), self.C.astype(float), self.W.astype(float)
+    def uncorrelated(self) -> tuple[Matrix, Matrix, Matrix]:
+        """Return F = A - N C, C and W - N N' in double precision: the plant without cross term that has the same P.
+
+        The observer x' = A x + L (y - C x) with L = K + N has the error of F under the gain K, driven by process noise
+        of intensity W - N N' that is uncorrelated with v.
+        """
+        F, W = self.A - self.N @ self.C, self.W - self.N @ self.N.T
+        return F.astype(float), self.C.astype(float), W.astype(float)
 
     def unscaled(self, P: Matrix) -> Matrix:
         """Return the covariance of the original states."""
         return P * np.outer(self.scaling, self.scaling)
 
     def boundary(self, slack: float = 1.0) -> Boundary:
-        """Find the boundary modes that the noise does not excite; see `unexcited_boundary`."""
-        F, _, W = self.double()
-        return unexcited_boundary(F, W, self.time, self.noise_size, slack)
+        """Find the boundary modes of F that the noise does not excite; see `unexcited_boundary`."""
+        F, _, W = self.uncorrelated()
+        return unexcited_boundary(F, W, self.time, float(np.linalg.norm(self.W.astype(float))), slack)
 
     def without(self, boundary: Boundary) -> "NormalForm":
         """Return the form that is left when the boundary's subspace is removed."""
         if len(boundary.modes) == 0:
             return self
         U = boundary.kept
-        return replace(self, F=U.T @ self.F @ U, C=self.C @ U, W=U.T @ self.W @ U)
+        return replace(self, A=U.T @ self.A @ U, C=self.C @ U, W=U.T @ self.W @ U, N=U.T @ self.N)
 
 
 def normal_form(plant: Plant) -> NormalForm:
-    """Remove the cross term, make V the identity and balance the states.
-
-    The observer x' = A x + L (y - C x) with L = K + N V^-1 has the error of F = A - N V^-1 C under the gain K, driven
-    by noise of intensity W - N V^-1 N' that is uncorrelated with v.
-    """
+    """Make V the identity and balance the states."""
     A, C, W, V, N = (X.astype(np.longdouble) for X in (plant.A, plant.C, plant.W, plant.V, plant.N))
     root = cholesky(V)
     C, N = forward(root, C), forward(root, N.T).T
-    F, rest = A - N @ C, W - N @ N.T
-    t = _balancing(F, C, rest)
-    scales = np.outer(t, t)
-    size = float(np.linalg.norm((W / scales).astype(float)))
-    return NormalForm(F / t[:, None] * t, C * t, rest / scales, plant.time, t, size)
+    t = _balancing(A - N @ C, C, W - N @ N.T)
+    return NormalForm(A / t[:, None] * t, C * t, W / np.outer(t, t), N / t[:, None], plant.time, t)
 
 
 def _balancing(F: Matrix, C: Matrix, W: Matrix) -> Matrix:

@@ -7,17 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.extended import divided
-from derive.numeric.lyapunov import solve_lyapunov
+from derive.numeric.lyapunov import error_covariance, solve_lyapunov
 from derive.numeric.modes import Matrix, distance_to_stability
 from derive.numeric.normal import NormalForm, normal_form
 from derive.numeric.plant import Plant
+from derive.numeric.stabilise import stabilising_gain
 
 __all__ = ["RiccatiSolution", "Status", "solve_riccati"]
 
 Status = Literal["stabilising", "strong", "failed"]
 
 NEWTON_STEPS = 10
-DOUBLINGS = 60
+KLEINMAN_STEPS = 60
 ACCURATE = 1e-13
 """Relative residual above which a second method is tried."""
 
@@ -59,8 +60,8 @@ def solve_riccati(plant: Plant) -> RiccatiSolution:
     Continuous: L = (P C' + N) V^-1.
 
     The cross term is removed (F = A - N V^-1 C, W - N V^-1 N'), V made the identity, the states scaled by powers of
-    two, and unexcited boundary modes are split off, on which P vanishes. SciPy's answer, or the doubling algorithm's
-    where that is better, is refined by Newton steps whose residual is formed in extended precision.
+    two, and unexcited boundary modes are split off, on which P vanishes. SciPy's answer, or where that is not
+    accurate the one of Kleinman's iteration, is refined by Newton steps whose residual is formed in extended precision.
 
     Args:
         plant: W >= 0, V > 0, [[W, N], [N', V]] >= 0, (A, C) detectable.
@@ -111,25 +112,25 @@ def _plant_gain(plant: Plant, P: Matrix) -> Matrix:
 
 
 def _gain(form: NormalForm, P: Matrix) -> Matrix:
-    """Return P C', in discrete time F P C' (C P C' + I)^-1, in the precision of P."""
+    """Return P C' + N, in discrete time (A P C' + N) (C P C' + I)^-1, in the precision of P."""
     PC = P @ form.C.T
     if form.time == "continuous":
-        return PC
-    return divided(form.F @ PC, form.C @ PC + np.eye(len(form.C)))
+        return PC + form.N
+    return divided(form.A @ PC + form.N, form.C @ PC + np.eye(len(form.C)))
 
 
 def _closed_loop(form: NormalForm, P: Matrix) -> Matrix:
-    """Return F - L C in double precision."""
-    return (form.F - _gain(form, P) @ form.C).astype(float)
+    """Return A - L C in double precision."""
+    return (form.A - _gain(form, P) @ form.C).astype(float)
 
 
 def _residual(form: NormalForm, P: Matrix) -> tuple[Matrix, float]:
     """Return the left-hand side of the equation at P, and its size relative to that of its terms."""
     L = _gain(form, P)
     if form.time == "continuous":
-        terms = (form.F @ P, P @ form.F.T, form.W, -L @ L.T)
+        terms = (form.A @ P, P @ form.A.T, form.W, -L @ L.T)
     else:
-        terms = (form.F @ P @ form.F.T, -P, form.W, -L @ (form.C @ P @ form.F.T))
+        terms = (form.A @ P @ form.A.T, -P, form.W, -L @ (form.C @ P @ form.A.T + form.N.T))
     value = np.sum(terms, axis=0)
     size = sum(_norm(term) for term in terms)
     return (value + value.T) / 2, _norm(value) / size if size else 0.0
@@ -137,11 +138,11 @@ def _residual(form: NormalForm, P: Matrix) -> tuple[Matrix, float]:
 
 def _solved(form: NormalForm) -> tuple[Matrix, int]:
     """Return the best of what the methods find, refined, and the number of Newton steps that it took."""
-    n = len(form.F)
+    n = len(form.A)
     best, steps, error = np.full((n, n), np.nan), 0, np.inf
     if n == 0:
         return best, steps
-    for method in (_scipy, _doubling):
+    for method in (_scipy, _kleinman):
         P, taken = _refined(form, method(form))
         found = _residual(form, P)[1] if _stable(form, P) else np.inf
         if found < error:
@@ -154,7 +155,7 @@ def _solved(form: NormalForm) -> tuple[Matrix, int]:
 def _scipy(form: NormalForm) -> Matrix:
     from scipy.linalg import solve_continuous_are, solve_discrete_are
 
-    F, C, W = form.double()
+    F, C, W = form.uncorrelated()
     solve = solve_continuous_are if form.time == "continuous" else solve_discrete_are
     try:
         return solve(F.T, C.T, W, np.eye(len(C)))
@@ -181,40 +182,20 @@ def _stable(form: NormalForm, P: Matrix) -> bool:
     return bool(np.isfinite(loop).all() and np.all(distance_to_stability(np.linalg.eigvals(loop), form.time) < 0))
 
 
-def _doubling(form: NormalForm) -> Matrix:
-    """Return the limit of E <- E (I + G H)^-1 E, G <- G + E (I + G H)^-1 G E', H <- H + E' H (I + G H)^-1 E.
-
-    Source: E. K.-W. Chu, H.-Y. Fan, W.-W. Lin, A structure-preserving doubling algorithm for continuous-time algebraic
-        Riccati equations, Linear Algebra Appl. 396 (2005) 55-80.
-    """
-    F, C, W = form.double()
-    E, G, H = F.T, C.T @ C, W
-    one = np.eye(len(F))
-    try:
-        if form.time == "continuous":
-            E, G, H = _cayley(E, G, H)
-        for _ in range(DOUBLINGS):
-            inverse = np.linalg.solve(one + G @ H, np.hstack([E, G]))
-            increment = E.T @ H @ inverse[:, : len(F)]
-            G = G + E @ inverse[:, len(F) :] @ E.T
-            E = E @ inverse[:, : len(F)]
-            G, H = (G + G.T) / 2, H + (increment + increment.T) / 2
-            if not _norm(increment) > np.finfo(float).eps * _norm(H):
-                break
-    except np.linalg.LinAlgError:
-        return np.full(F.shape, np.nan)
-    return H
-
-
-def _cayley(A: Matrix, G: Matrix, H: Matrix) -> tuple[Matrix, Matrix, Matrix]:
-    """Return the start of the doubling for A'X + X A - X G X + H = 0, by the Cayley transform with shift |A|."""
-    one = np.eye(len(A))
-    shift = 2 * max(_norm(A), np.sqrt(_norm(G) * _norm(H))) or 1.0
-    shifted = A - shift * one
-    inverse = np.linalg.inv(shifted)
-    core = np.linalg.inv(shifted.T + H @ inverse @ G)
-    E = one + 2 * shift * core.T
-    return E, 2 * shift * inverse @ G @ core, 2 * shift * core @ H @ inverse
+def _kleinman(form: NormalForm) -> Matrix:
+    """Return the limit of P = covariance of K, K = optimal gain for P: from a stabilising start P falls steadily."""
+    F, C, W = form.uncorrelated()
+    K, P = stabilising_gain(F, C, form.time), np.full(F.shape, np.nan)
+    best = np.inf
+    for _ in range(KLEINMAN_STEPS):
+        if np.any(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) >= 0):
+            break
+        better = error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
+        if not np.trace(better) < best:
+            break
+        P, best = better, np.trace(better)
+        K = (_gain(form, P) - form.N).astype(float)
+    return P
 
 
 def _norm(X: Matrix) -> float:

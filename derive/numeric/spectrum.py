@@ -102,7 +102,7 @@ def hamiltonian_route(plant: Plant) -> HamiltonianResult:
     Source: the spectral factorisation Phi = (I + G) V (I + G~); continuous time: arXiv:1807.08604 (2018), theorem 2.
     """
     form = _excited(plant)
-    F, C, W = form.double()
+    F, C, W = form.uncorrelated()
     G = C.T @ C
     zero, one = np.zeros_like(F), np.eye(len(F))
     if plant.is_continuous:
@@ -150,7 +150,7 @@ class _Spectrum:
     def of(cls, form: NormalForm) -> "_Spectrum":
         from scipy.linalg import schur
 
-        F, C, W = form.double()
+        F, C, W = form.uncorrelated()
         sizes, vectors = np.linalg.eigh(W) if len(W) else (np.zeros(0), np.zeros((0, 0)))
         excited = sizes > 0
         T, Z = cast(tuple[Any, Any], schur(F, output="complex")) if len(F) else (F.astype(complex), F.astype(complex))
