@@ -71,18 +71,18 @@ class Poly:
     def __mul__(self, other: Poly) -> Poly:
         if self.cols != other.rows and ANY not in (self.cols, other.rows):
             raise Rejected(f"cannot multiply {self.rows} x {self.cols} and {other.rows} x {other.cols}")
-        terms: dict[Key, Fraction] = {}
+        terms: dict[Key, Fraction | int] = {}
         for (m, v), c in self.terms.items():
             for (n, w), d in other.terms.items():
-                if bound(m) & times_of(n, w) or bound(n) & times_of(m, v):
+                if (m and captures(m, n, w)) or (n and captures(n, m, v)):
                     raise Rejected(f"a factor would be captured by an integral in {v} {w}")
                 key = (times(m, n), v + w)
-                terms[key] = terms.get(key, Fraction(0)) + c * d
+                terms[key] = terms.get(key, 0) + c * d
         return Poly(terms, self.rows or other.rows, other.cols or self.cols)
 
     def scale(self, factor: Fraction | int, scalars: Scalars = ()) -> Poly:
         """Multiply by a rational number and central scalars; ∫τ integrates over τ."""
-        if any(bound(m) & times_of(scalars, ()) for m, _ in self.terms):
+        if scalars and any(captures(m, scalars, ()) for m, _ in self.terms):
             raise Rejected(f"a factor of {scalars} would be captured by an integral")
         return Poly({(times(scalars, m), w): c * factor for (m, w), c in self.terms.items()}, self.rows, self.cols)
 
@@ -97,7 +97,13 @@ def times(m: Scalars, n: Scalars) -> Scalars:
 
 def bound(scalars: Scalars) -> set[str]:
     """Return the variables of integration that a monomial binds."""
-    return {s[1:] for s in scalars if s.startswith("∫")} if scalars else set()
+    return {s[1:] for s in scalars if s.startswith("∫")}
+
+
+def captures(m: Scalars, n: Scalars, word: Word) -> bool:
+    """Tell whether an integral in m binds a time that occurs in n or in the word."""
+    inside = bound(m)
+    return bool(inside) and not inside.isdisjoint(times_of(n, word))
 
 
 def times_of(scalars: Scalars, word: Word) -> set[str]:
@@ -115,7 +121,7 @@ def identity(dimension: str) -> Poly:
 def parts(letter: str) -> tuple[str, bool, tuple[str, ...]]:
     """Split a letter into base name, transposed or not, and time arguments."""
     head, _, arguments = letter.partition("@")
-    return head.rstrip("'"), head.endswith("'"), tuple(arguments.split(",")) if arguments else ()
+    return head.removesuffix("'"), head.endswith("'"), tuple(arguments.split(",")) if arguments else ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +134,7 @@ class Alphabet:
     def shape(self, letter: str) -> tuple[str, str]:
         """Return (rows, cols) of a letter or transposed letter."""
         name, primed, _ = parts(letter)
-        if name not in self.letters or letter.partition("@")[0] not in (name, name + "'"):
+        if name not in self.letters:
             raise Rejected(f"unknown letter {letter}")
         found = self.letters[name]
         return (found.cols, found.rows) if primed else (found.rows, found.cols)

@@ -192,6 +192,7 @@ def test_a_relation_may_be_integrated():
         (term("length", "", "Phi@t,τ"), "captured"),
         (term("length", "Phi@t,τ", ""), "captured"),
         (term("length", scalars="δ(τ,σ)"), "captured"),
+        (term("length", scalars="δ(σ,τ)"), "captured"),
         (term("length", scalars="∫τ"), "captured"),
         (term("length", scalars="∫t"), "a limit"),
         (term("length", scalars="∫σ ∫σ"), "bound twice"),
@@ -199,6 +200,11 @@ def test_a_relation_may_be_integrated():
 )
 def test_nothing_is_captured_by_an_integral(addend, match):
     rejects(match, square((1, "")), addend, relations=INTEGRAL)
+
+
+def test_other_scalars_may_be_squared():
+    assert poly("n", "n", (1, "A", "s")) * poly("n", "n", (1, "B", "s z")) == poly("n", "n", (1, "A B", "s s z"))
+    assert poly("n", "n", (1, "A", "z")).scale(2, ("s",)) == poly("n", "n", (2, "A", "s z"))
 
 
 def test_a_variable_is_bound_once():
@@ -238,6 +244,9 @@ def test_arithmetic():
     assert a * identity("n") == a
     assert a - a == Poly({}, "n", "n")
     assert a != "A"
+    assert all(type(c) is Fraction for c in (a + b).terms.values())
+    one = poly(ANY, ANY, (1, "", "s"))
+    assert one * a == a * one == poly("n", "n", (1, "A", "s"))
     assert len({a, square((1, "A")), b}) == 2
 
 
