@@ -1,0 +1,1 @@
+"""Speed and counts against their targets: python -m tests.benchmark [--only SECTION]."""

@@ -1,0 +1,40 @@
+"""Run the benchmark and print one table; ends with 1 if a target is missed."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+from tests.benchmark.prover import prover
+from tests.benchmark.startup import startup
+from tests.benchmark.table import Row
+
+SECTIONS: dict[str, Callable[[], list[Row]]] = {"prover": prover, "startup": startup}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure the sections asked for."""
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmark", description=__doc__)
+    parser.add_argument("--only", action="append", choices=SECTIONS, metavar="SECTION", help=", ".join(SECTIONS))
+    chosen = parser.parse_args(arguments).only or list(SECTIONS)
+    results = {section: SECTIONS[section]() for section in chosen}
+    show(results)
+    return 0 if all(row.ok for rows in results.values() for row in rows) else 1
+
+
+def show(results: dict[str, list[Row]]) -> None:
+    """Print the measurements."""
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("section", "measurement", "value", "target", "met")
+    for section, rows in results.items():
+        for row in rows:
+            table.add_row(section, row.name, row.value, row.target, "yes" if row.ok else "[bold red]no[/]")
+        table.add_section()
+    Console(width=None if sys.stdout.isatty() else 150).print(table)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
