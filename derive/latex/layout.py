@@ -1,0 +1,365 @@
+"""Layout of terms: order, signs, parentheses, accents and scripts, decided once for every printer.
+
+``layout`` turns a term or equation into boxes. A printer (tex.py, mathml.py, plain.py) only knows the nine kinds of box.
+Parentheses follow the precedence sum < open operator < product < power < atom, and appear only where they are needed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+
+from derive.latex.alphabet import GREEK
+from derive.terms import (
+    Block,
+    Delta,
+    Dot,
+    Equation,
+    Expect,
+    Glyph,
+    Gradient,
+    Identity,
+    Image,
+    Integral,
+    Inverse,
+    Neg,
+    Number,
+    Product,
+    Sum,
+    Symbol,
+    Term,
+    Trace,
+    Transpose,
+    Zero,
+)
+
+TIMES, APPLY, THIN = "\u2062", "\u2061", "\u2009"  # invisible times, function application, thin space
+TOP, INTEGRAL = "⊤", "∫"
+SCRIPT = "𝒜ℬ𝒞𝒟ℰℱ𝒢ℋℐ𝒥𝒦ℒℳ𝒩𝒪𝒫𝒬ℛ𝒮𝒯𝒰𝒱𝒲𝒳𝒴𝒵"
+ADDITIVE = frozenset("+−")
+
+
+# ------------------------------------------------------------------------------------------------ boxes
+@dataclass(frozen=True)
+class Letter:
+    """A letter in italics, or upright; a word is always upright."""
+
+    text: str
+    upright: bool = False
+
+
+@dataclass(frozen=True)
+class Digits:
+    """A number without sign."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Op:
+    """An operator: 'infix' with space around it, 'prefix' with space before it, or 'tight' without."""
+
+    text: str
+    form: str = "infix"
+
+
+@dataclass(frozen=True)
+class Row:
+    """Boxes side by side."""
+
+    items: tuple[Box, ...]
+
+
+@dataclass(frozen=True)
+class Scripted:
+    """A base with a subscript, a superscript, or both."""
+
+    base: Box
+    sub: Box | None = None
+    sup: Box | None = None
+
+
+@dataclass(frozen=True)
+class Accented:
+    """A base under an accent: hat, bar, dot or tilde."""
+
+    base: Box
+    accent: str
+
+
+@dataclass(frozen=True)
+class Over:
+    """A fraction; ``small`` keeps it at the size of running text."""
+
+    top: Box
+    bottom: Box
+    small: bool = False
+
+
+@dataclass(frozen=True)
+class Fenced:
+    """A body between brackets, which grow with it when it is tall."""
+
+    body: Box
+    left: str = "("
+    right: str = ")"
+
+    @property
+    def tall(self) -> bool:
+        """Whether the body is higher than a line of text."""
+        return any(
+            isinstance(b, Table) or (isinstance(b, Over) and not b.small) or b == Op(INTEGRAL, "prefix")
+            for b in inside(self.body)
+        )
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of cells between square brackets."""
+
+    rows: tuple[tuple[Box, ...], ...]
+
+
+Box = Letter | Digits | Op | Row | Scripted | Accented | Over | Fenced | Table
+
+
+def parts(box: Box) -> Iterator[Box]:
+    """Iterate over the boxes directly inside a box, from left to right."""
+    match box:
+        case Row(items):
+            yield from items
+        case Scripted(base, sub, sup):
+            yield from (b for b in (base, sub, sup) if b is not None)
+        case Accented(base):
+            yield base
+        case Over(top, bottom):
+            yield from (top, bottom)
+        case Fenced(body):
+            yield body
+        case Table(rows):
+            yield from (cell for row in rows for cell in row)
+        case _:
+            return
+
+
+def inside(box: Box) -> Iterator[Box]:
+    """Iterate over a box and everything in it."""
+    yield box
+    for part in parts(box):
+        yield from inside(part)
+
+
+def row(items: Iterable[Box]) -> Box:
+    """Set boxes side by side; rows inside are dissolved, a single box stays as it is."""
+    flat = [b for item in items for b in (item.items if isinstance(item, Row) else (item,))]
+    return flat[0] if len(flat) == 1 else Row(tuple(flat))
+
+
+def width(box: Box) -> float:
+    """Estimate the width in em, to decide where a row may be broken."""
+    match box:
+        case Letter(text) | Digits(text):
+            return 0.6 * len(text)
+        case Op(text, form):
+            return 0.0 if text in (TIMES, APPLY) else 0.2 if text == THIN else 1.3 if form == "infix" else 0.5
+        case Scripted(base, sub, sup):
+            return width(base) + 0.7 * max((width(b) for b in (sub, sup) if b is not None), default=0.0)
+        case Over(top, bottom, small):
+            return (0.7 if small else 1.0) * max(width(top), width(bottom))
+        case Fenced(body):
+            return width(body) + 0.8
+        case Table(rows):
+            return sum(max(width(r[i]) for r in rows) + 0.8 for i in range(len(rows[0]))) + 0.4
+        case _:
+            return sum(map(width, parts(box)))
+
+
+def split(box: Box) -> list[Box]:
+    """Split a sum into its addends, each with the sign in front of it, where a line may be broken."""
+    pieces: list[list[Box]] = [[]]
+    for item in box.items if isinstance(box, Row) else (box,):
+        if isinstance(item, Op) and item.form == "infix" and item.text in ADDITIVE and pieces[-1]:
+            pieces.append([])
+        pieces[-1].append(item)
+    return [row(p) for p in pieces]
+
+
+# ------------------------------------------------------------------------------------------------ precedence
+SUM, OPEN, PRODUCT, POWER, ATOM = range(5)
+
+
+def level(term: Term) -> int:
+    """Return how tightly a term holds together; 'open' is an operator whose operand is not closed on the right."""
+    if isinstance(term, Sum) or signed(term)[0]:
+        return SUM
+    match term:
+        case Product(factors):
+            return PRODUCT if len(factors) > 1 else level(factors[0])
+        case Dot(Symbol() as symbol):
+            return level(symbol)
+        case Dot() | Integral() | Gradient():
+            return OPEN
+        case Number(value):
+            return ATOM if value.denominator == 1 else PRODUCT
+        case Transpose() | Inverse():
+            return POWER
+        case Symbol(glyph=Glyph(sup=sup)):
+            return POWER if sup else ATOM
+        case _:
+            return ATOM
+
+
+def signed(term: Term) -> tuple[bool, Term]:
+    """Split off a leading minus sign: of a Neg, a negative number, or a product that starts with one."""
+    match term:
+        case Neg(body):
+            return True, body
+        case Number(value) if value < 0:
+            return True, Number(-value)
+        case Product((first, *rest)):
+            negative, stripped = signed(first)
+            return negative, Product((stripped, *rest)) if negative else term
+        case _:
+            return False, term
+
+
+def at_least(term: Term, wanted: int) -> Box:
+    """Lay out a term, in parentheses if it holds together less tightly than wanted."""
+    return layout(term) if level(term) >= wanted else Fenced(layout(term))
+
+
+# ------------------------------------------------------------------------------------------------ terms
+def layout(term: Term | Equation) -> Box:
+    """Lay out a term or an equation in the order in which it was written."""
+    match term:
+        case Equation(lhs, relation, rhs):
+            return row((layout(lhs), Op(relation), layout(rhs)))
+        case Symbol():
+            return _symbol(term)
+        case Identity():
+            return Letter("I")
+        case Zero():
+            return Digits("0")
+        case Sum(addends):
+            return _sum(addends)
+        case Transpose(body):
+            return _power(body, Op(TOP, "tight"))
+        case Inverse(body):
+            return _power(body, row((Op("−", "tight"), Digits("1"))))
+        case Block(rows):
+            return Table(tuple(tuple(layout(t) for t in r) for r in rows))
+        case Delta(one, two):
+            difference = row((label(one), Op("−"), label(two)))
+            return row((Letter("δ"), Op(APPLY, "tight"), Fenced(difference)))
+        case Neg() | Number() | Product():
+            return _product(term)
+        case _:
+            return _operator(term)
+
+
+def label(text: str) -> Box:
+    """Lay out an index or a time: letters, numbers and signs; digits right after a letter are its subscript."""
+    items: list[Box] = []
+    for letter, index, digits, sign in re.findall(r"(\\[A-Za-z]+|[^\W\d_])(\d*)|(\d+)|(\S)", text):
+        if letter:
+            base = Letter(GREEK.get(letter.lstrip("\\"), letter.lstrip("\\")))
+            items.append(Scripted(base, Digits(index)) if index else base)
+        elif digits:
+            items.append(Digits(digits))
+        elif sign not in "_{}":
+            items.append(Letter(sign) if sign == "∞" else Op({"-": "−", "*": "∗"}.get(sign, sign), "tight"))
+    return row(items)
+
+
+def _symbol(symbol: Symbol, *accents: str) -> Box:
+    glyph = symbol.glyph if symbol.glyph.letter else Glyph(symbol.name)
+    text = glyph.letter.lstrip("\\")
+    text = GREEK.get(text, text)
+    box: Box = Letter(text, glyph.upright or len(text) > 1)
+    for accent in (glyph.accent, *accents):
+        box = Accented(box, accent) if accent else box
+    if glyph.sub or glyph.sup:
+        box = Scripted(box, label(glyph.sub) if glyph.sub else None, label(glyph.sup) if glyph.sup else None)
+    times = symbol.args if symbol.show_args is None else symbol.show_args
+    return _applied(box, [label(t) for t in times]) if times else box
+
+
+def _applied(function: Box, arguments: list[Box], left: str = "(", right: str = ")") -> Box:
+    commas = [b for a in arguments for b in (Op(",", "tight"), a)][1:]
+    return row((function, Op(APPLY, "tight"), Fenced(row(commas), left, right)))
+
+
+def _sum(addends: tuple[Term, ...]) -> Box:
+    items: list[Box] = []
+    for addend in _flat(addends):
+        negative, body = signed(addend)
+        items.append(Op("−", "infix" if items else "prefix") if negative else Op("+"))
+        items.append(at_least(body, OPEN))
+    return row(items[1:] if items[0] == Op("+") else items)
+
+
+def _flat(addends: Iterable[Term]) -> Iterator[Term]:
+    for addend in addends:
+        yield from _flat(addend.addends) if isinstance(addend, Sum) else (addend,)
+
+
+def _product(term: Term) -> Box:
+    negative, body = signed(term)
+    if negative:
+        return row((Op("−", "prefix"), at_least(body, OPEN)))
+    if isinstance(body, Number):
+        return _number(body.value)
+    assert isinstance(body, Product)
+    factors = list(_factors(body))
+    items: list[Box] = []
+    for i, factor in enumerate(factors):
+        if i:
+            items.append(Op("⋅") if isinstance(factor, Number) else Op(TIMES, "tight"))
+        items.append(at_least(factor, OPEN if i == len(factors) - 1 else PRODUCT))
+    return row(items)
+
+
+def _factors(product: Product) -> Iterator[Term]:
+    """Dissolve products inside a product, unless one starts with a minus sign."""
+    for factor in product.factors:
+        yield from _factors(factor) if isinstance(factor, Product) and not signed(factor)[0] else (factor,)
+
+
+def _number(value: Fraction) -> Box:
+    top, bottom = Digits(str(value.numerator)), Digits(str(value.denominator))
+    return top if value.denominator == 1 else Over(top, bottom, small=True)
+
+
+def _power(body: Term, exponent: Box) -> Box:
+    """Raise a term; the exponent joins the subscript that a symbol carries."""
+    base = at_least(body, ATOM)
+    if isinstance(base, Scripted) and base.sup is None:
+        return Scripted(base.base, base.sub, exponent)
+    return Scripted(base, None, exponent)
+
+
+def _operator(term: Term) -> Box:
+    match term:
+        case Dot(Symbol() as symbol):
+            return _symbol(symbol, "dot")
+        case Dot(body):
+            d = Letter("d", upright=True)
+            closed = layout(body) if level(body) in (OPEN, POWER, ATOM) else Fenced(layout(body))
+            return row((Over(d, row((d, Letter("t")))), Op(APPLY, "tight"), closed))
+        case Gradient(body, symbol):
+            closed = layout(body) if isinstance(body, Trace) else Fenced(layout(body))
+            return row((Over(Op("∂", "tight"), row((Op("∂", "tight"), layout(symbol)))), Op(APPLY, "tight"), closed))
+        case Integral(body, variable):
+            limits = Scripted(Op(INTEGRAL, "prefix"), label("t0"), Letter("t"))
+            differential = row((Op(THIN, "tight"), Letter("d", upright=True), label(variable)))
+            return row((limits, at_least(body, OPEN), differential))
+        case Expect(body):
+            return _applied(Letter("𝔼", upright=True), [layout(body)], "[", "]")
+        case Trace(body):
+            return _applied(Letter("tr", upright=True), [layout(body)])
+        case Image(name, body):
+            return _applied(Letter(SCRIPT[ord(name[0].upper()) - ord("A")], upright=True), [layout(body)], "[", "]")
+        case _:
+            raise TypeError(f"no layout for {type(term).__name__}")

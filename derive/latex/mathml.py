@@ -1,0 +1,74 @@
+"""MathML Core printer: what browsers and screen readers take without any script."""
+
+from __future__ import annotations
+
+from html import escape
+
+from derive.latex.alphabet import ACCENTS, SIGNS
+from derive.latex.layout import THIN, TOP, Accented, Box, Digits, Fenced, Letter, Op, Over, Row, Scripted, Table, layout
+from derive.terms import Equation, Term
+
+SPACE = '<mspace width=".17em"/>'
+CAPITAL_GREEK = frozenset("ΓΔΘΛΞΠΣΥΦΨΩ")  # upright, as in LaTeX
+SINGLE = {":=": "≔"}
+
+
+def mathml(term: Term | Equation, display: bool = False) -> str:
+    """Print a term or an equation as a ``math`` element."""
+    return math(layout(term), display)
+
+
+def math(box: Box, display: bool = False) -> str:
+    """Wrap a printed box in a ``math`` element."""
+    return f'<math display="block">{_many(box)}</math>' if display else f"<math>{_many(box)}</math>"
+
+
+def markup(box: Box) -> str:
+    """Print a box as exactly one element."""
+    match box:
+        case Letter(text, upright):
+            return _letter(text, upright)
+        case Digits(text):
+            return f"<mn>{text}</mn>"
+        case Op(text, form):
+            return _operator(text, form)
+        case Row():
+            return f"<mrow>{_many(box)}</mrow>"
+        case Scripted(base, sub, sup):
+            tag = "msub" if sup is None else "msup" if sub is None else "msubsup"
+            return f"<{tag}>{''.join(markup(b) for b in (base, sub, sup) if b is not None)}</{tag}>"
+        case Accented(base, accent):
+            mark = f'<mo stretchy="false">{ACCENTS[accent][1]}</mo>'
+            return f'<mover accent="true">{markup(base)}{mark}</mover>'
+        case Over(top, bottom, small):
+            style = ' displaystyle="false"' if small else ""
+            return f"<mfrac{style}>{markup(top)}{markup(bottom)}</mfrac>"
+        case Fenced(body, left, right):
+            fixed = "" if box.tall else ' stretchy="false"'
+            return f"<mrow><mo{fixed}>{left}</mo>{_many(body)}<mo{fixed}>{right}</mo></mrow>"
+        case Table(rows):
+            cells = ("".join(f"<mtd>{_many(c)}</mtd>" for c in r) for r in rows)
+            return f"<mrow><mo>[</mo><mtable>{''.join(f'<mtr>{c}</mtr>' for c in cells)}</mtable><mo>]</mo></mrow>"
+
+
+def _many(box: Box) -> str:
+    """Print a box where any number of elements may stand."""
+    return "".join(map(markup, box.items)) if isinstance(box, Row) else markup(box)
+
+
+def _letter(text: str, upright: bool) -> str:
+    normal = len(text) == 1 and (upright or text in CAPITAL_GREEK) and text.isascii() | (text in CAPITAL_GREEK)
+    return f'<mi mathvariant="normal">{escape(text)}</mi>' if normal else f"<mi>{escape(text)}</mi>"
+
+
+def _operator(text: str, form: str) -> str:
+    if text == THIN:
+        return SPACE
+    sign = escape(SINGLE.get(text, text))
+    if text == TOP:
+        return f"<mi>{sign}</mi>"
+    if form == "infix":
+        return f"<mo>{sign}</mo>"
+    if form == "prefix":
+        return f'<mo form="prefix">{sign}</mo>'
+    return f'<mo lspace="0" rspace="0">{sign}</mo>' if text in SIGNS or text == "," else f"<mo>{sign}</mo>"

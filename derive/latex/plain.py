@@ -1,0 +1,62 @@
+"""Plain text printer for terminals and alternative texts, e.g. ``(A - L C) P (A - L C)' + Q``."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from derive.latex.alphabet import ACCENTS, SIGNS
+from derive.latex.layout import (
+    APPLY,
+    THIN,
+    TIMES,
+    TOP,
+    Accented,
+    Box,
+    Digits,
+    Fenced,
+    Letter,
+    Op,
+    Over,
+    Row,
+    Scripted,
+    Table,
+    layout,
+)
+from derive.terms import Equation, Term
+
+SPACES = {TIMES: " ", APPLY: "", THIN: " "}
+
+
+def plain(term: Term | Equation) -> str:
+    """Print a term or an equation on one line of text."""
+    return text(layout(term))
+
+
+def text(box: Box) -> str:
+    """Print a box as text."""
+    match box:
+        case Letter(letters):
+            return unicodedata.normalize("NFKC", letters)
+        case Digits(digits):
+            return digits
+        case Op(sign, form):
+            printed = SPACES.get(sign, SIGNS.get(sign, ("", sign))[1])
+            return f" {printed} " if form == "infix" else printed
+        case Row(items):
+            return "".join(map(text, items))
+        case Scripted(base, sub, sup):
+            lower = "_" + _group(text(sub)) if sub is not None else ""
+            upper = "'" if sup == Op(TOP, "tight") else "^" + _group(text(sup)) if sup is not None else ""
+            return text(base) + lower + upper
+        case Accented(base, accent):
+            return text(base) + ACCENTS[accent][2]
+        case Over(top, bottom):
+            return f"{text(top)}/{text(bottom)} " if not isinstance(top, Digits) else f"{text(top)}/{text(bottom)}"
+        case Fenced(body, left, right):
+            return left + text(body) + right
+        case Table(rows):
+            return "[" + "; ".join(", ".join(map(text, r)) for r in rows) + "]"
+
+
+def _group(script: str) -> str:
+    return script if script.isalnum() or script in ("-1", "+", "-", "*") else f"{{{script}}}"

@@ -1,0 +1,69 @@
+"""The font of the notes: STIX Two Math, as ziamath ships it, cut down to what a page shows and embedded as woff2."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Iterable
+from functools import cache
+from importlib.util import find_spec
+from io import BytesIO
+from pathlib import Path
+
+from derive.errors import InputError
+
+STRETCHY = "()[]{}|∫ˆ˙¯˜̂̇̄̃"
+FEATURES = ["ccmp", "kern", "ssty"]
+
+
+def italic(char: str) -> str:
+    """Return the mathematical italic that a browser shows for a single letter in ``mi``."""
+    code = ord(char)
+    if char == "h":
+        return "ℎ"
+    if "A" <= char <= "Z":
+        return chr(0x1D434 + code - ord("A"))
+    if "a" <= char <= "z":
+        return chr(0x1D44E + code - ord("a"))
+    if "Α" <= char <= "Ω":
+        return chr(0x1D6E2 + code - ord("Α"))
+    if "α" <= char <= "ω":
+        return chr(0x1D6FC + code - ord("α"))
+    return {"ϵ": "𝜖", "ϑ": "𝜗", "ϕ": "𝜙", "ϱ": "𝜚"}.get(char, char)
+
+
+def embedded(text: str) -> str:
+    """Return a ``data:`` address of the font with the characters of a text, their italics, and stretchy brackets."""
+    return "data:font/woff2;base64," + b64encode(_subset(frozenset(text))).decode("ascii")
+
+
+@cache
+def _subset(characters: Iterable[str]) -> bytes:
+    from fontTools.subset import Options, Subsetter
+    from fontTools.ttLib import TTFont
+
+    options = Options(flavor="woff2", layout_features=FEATURES, hinting=False, desubroutinize=True, notdef_outline=True)
+    options.drop_tables += ["DSIG"]
+    font = TTFont(font_file(), recalcTimestamp=False)
+    subsetter = Subsetter(options)
+    subsetter.populate(text="".join(sorted({*characters, *map(italic, characters), *STRETCHY})))
+    subsetter.subset(font)
+    font.flavor = "woff2"
+    out = BytesIO()
+    font.save(out)
+    return out.getvalue()
+
+
+def font_file() -> Path:
+    """Return the path of the font, without importing the package that ships it.
+
+    Raises:
+        InputError: ziamath is not installed.
+    """
+    spec = find_spec("ziamath")
+    for folder in (spec.submodule_search_locations or ()) if spec else ():
+        path = Path(folder) / "fonts" / "STIXTwoMath-Regular.ttf"
+        if path.is_file():
+            return path
+    raise InputError(
+        "mathematics font: expected STIX Two Math from the package ziamath, got none; install ziamath>=0.10"
+    )

@@ -1,0 +1,309 @@
+"""Document model of the notes: what a page shows, before any format.
+
+A badge comes from the replay of a step and from nothing else: ``document_of`` takes the outcomes of the replay.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from derive.context import Declared, DeclaredInverse
+from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Step
+from derive.terms import Dot, Equation, Expect, Inverse, Symbol, Term
+
+__all__ = [
+    "SOURCES",
+    "Badge",
+    "Block",
+    "Display",
+    "Document",
+    "Figure",
+    "Inline",
+    "Link",
+    "Note",
+    "Para",
+    "Row",
+    "Section",
+    "Table",
+    "document_of",
+    "join",
+    "visible",
+    "slug",
+]
+
+Badge = Literal["proved", "definition", "hypothesis", "refuted", "incomplete", "not proved", ""]
+FINDINGS = {"false": "refuted", "incomplete": "incomplete", "assumption": "incomplete", "silent": "incomplete"}
+SOURCES = {
+    "000": "Lecture notes, Kalman filter as an observer (equations 31.x)",
+    "001": "Fang, Ishii, Chen, Johansson, arXiv:1807.08604 (2018)",
+    "002": "Optimal Luenberger observer (lecture notes)",
+    "004": "Vander Velde, MIT 16.322, Lecture 23 (2004)",
+}
+
+
+@dataclass(frozen=True)
+class Link:
+    """A reference to a row of the page, by a label."""
+
+    label: str | Term
+    target: str
+
+
+Inline = tuple["str | Term | Equation | Link", ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One displayed line: [lhs] relation rhs, its number, the reason under it and what that reason rests on."""
+
+    lhs: Term | None
+    relation: str
+    rhs: Term
+    id: str
+    number: str = ""
+    badge: Badge = ""
+    reason: Inline = ()
+    rule: str = ""
+    uses: Inline = ()
+
+
+@dataclass(frozen=True)
+class Display:
+    """Rows one under the other, aligned at their relations."""
+
+    rows: tuple[Row, ...]
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading; level 1 is a lecture, level 2 a section of it."""
+
+    title: str
+    level: int
+    id: str
+
+
+@dataclass(frozen=True)
+class Para:
+    """Running text."""
+
+    text: Inline
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table with a caption; cells are inline."""
+
+    head: tuple[str, ...]
+    rows: tuple[tuple[Inline, ...], ...]
+    caption: Inline = ()
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A drawing as SVG text, with a caption and words for those who cannot see it."""
+
+    svg: str
+    caption: Inline
+    alt: str
+
+
+@dataclass(frozen=True)
+class Note:
+    """A finding on a formula of a source."""
+
+    id: str
+    source: str
+    number: str
+    finding: str
+    badge: Badge
+    printed: Inline
+    text: Inline
+    evidence: tuple[Table, ...] = ()
+    true: Equation | None = None
+    proof: Link | None = None
+
+
+Block = Section | Para | Display | Table | Figure | Note
+
+
+@dataclass(frozen=True)
+class Document:
+    """A page: title, a line under it, and its blocks."""
+
+    title: str
+    subtitle: Inline
+    blocks: tuple[Block, ...]
+    proved: int = 0
+    total: int = 0
+    authors: tuple[str, ...] = field(default=())
+
+
+def slug(*parts: str) -> str:
+    """Return an anchor made of ASCII letters, digits and hyphens; what has no such letter is spelled by its code."""
+    text = "-".join(parts)
+    return re.sub(r"[^A-Za-z0-9.-]+", lambda m: "-" if m[0].isspace() else "".join(f"_{ord(c):x}" for c in m[0]), text)
+
+
+def visible(number: str) -> str:
+    """Return the number as the reader sees it: an equation that its source does not number (u1, u2, ...) has none."""
+    return "" if number.startswith("u") else number
+
+
+def document_of(lecture: Lecture, outcomes: Sequence[Outcome]) -> Document:
+    """Lay out a lecture; every badge of a derived row comes from the outcome of its replay."""
+    accepted = {o.step: o.accepted for o in outcomes}
+    anchors, numbers = _anchors(lecture)
+    layout = _Layout(lecture, accepted, anchors, numbers)
+    blocks: list[Block] = [Section(lecture.title, 1, slug(lecture.key))]
+    for item in lecture.items:
+        blocks += layout.block(item)
+    sources = "; ".join(SOURCES[s] for s in lecture.sources if s in SOURCES)
+    proved = sum(accepted.get(s.name, False) for s in lecture.steps)
+    return Document(lecture.title, (sources,), tuple(blocks), proved, len(lecture.steps))
+
+
+def join(title: str, subtitle: Inline, documents: Sequence[Document], extra: Sequence[Block] = ()) -> Document:
+    """Bind several documents into one page, with further blocks at its end."""
+    blocks = tuple(b for d in documents for b in d.blocks)
+    return Document(
+        title, subtitle, (*blocks, *extra), sum(d.proved for d in documents), sum(d.total for d in documents)
+    )
+
+
+def _anchors(lecture: Lecture) -> tuple[dict[str, str], dict[str, str]]:
+    """Return the anchor and the number of every declaration that is displayed and of every step."""
+    anchors: dict[str, str] = {}
+    numbers: dict[str, str] = {}
+    for item in lecture.items:
+        if isinstance(item, Given):
+            for row in item.rows:
+                anchors.setdefault(row.name, slug(lecture.key, row.name))
+                numbers.setdefault(row.name, row.number)
+        if isinstance(item, Derived):
+            for step in item.steps:
+                shown = item.steps[-2].name if step.rule == "chain" and len(item.steps) > 1 else step.name
+                anchors[step.name], numbers[step.name] = slug(lecture.key, shown), step.number
+    return anchors, numbers
+
+
+@dataclass(frozen=True)
+class _Layout:
+    lecture: Lecture
+    accepted: Mapping[str, bool]
+    anchors: Mapping[str, str]
+    numbers: Mapping[str, str]
+
+    def block(self, item: Item) -> list[Block]:
+        match item:
+            case Heading(title):
+                return [Section(title, 2, slug(self.lecture.key, title))]
+            case Paragraph(text):
+                return [Para(text)]
+            case Given(rows):
+                return [
+                    Display(
+                        tuple(
+                            Row(
+                                r.statement.lhs,
+                                r.statement.relation,
+                                r.statement.rhs,
+                                self.anchors[r.name],
+                                visible(r.number),
+                                r.kind,
+                                r.reason,
+                            )
+                            for r in rows
+                        )
+                    )
+                ]
+            case Derived(steps):
+                return [Display(tuple(self.rows(steps)))]
+            case Erratum():
+                return [self.note(item)]
+
+    def rows(self, steps: Sequence[Step]) -> list[Row]:
+        """Show a chain: the left side once; the lemma that closes it lends its number and verdict to the last row."""
+        closing = steps[-1] if steps[-1].rule == "chain" and len(steps) > 1 else None
+        shown = steps[:-1] if closing else steps
+        rows: list[Row] = []
+        for i, step in enumerate(shown):
+            continues = i > 0 and shown[i - 1].statement.rhs == step.statement.lhs
+            last = closing if closing and i == len(shown) - 1 else None
+            proved = self.accepted.get(step.name, False) and (last is None or self.accepted.get(last.name, False))
+            rows.append(
+                Row(
+                    None if continues else step.statement.lhs,
+                    step.statement.relation,
+                    step.statement.rhs,
+                    slug(self.lecture.key, step.name),
+                    visible((last.number if last else "") or step.number),
+                    "proved" if proved else "not proved",
+                    step.reason,
+                    step.rule,
+                    self.uses(step.uses),
+                )
+            )
+        return rows
+
+    def uses(self, names: Sequence[str]) -> Inline:
+        """Return references to what a step rests on; identity matrices and the like go without saying."""
+        out: list[str | Term | Equation | Link] = []
+        for name in names:
+            label = self.label(name)
+            if label is None:
+                continue
+            out += [", "] if out else []
+            target = self.anchors.get(name)
+            out.append(Link(label, target) if target else label)
+        return tuple(out)
+
+    def label(self, name: str) -> str | Term | None:
+        """Return how a declaration or lemma is called in running text: its number, its symbol, or its name."""
+        if visible(self.numbers.get(name, "")):
+            return f"({self.numbers[name]})"
+        item = self.lecture.theory.declared.get(name)
+        step = next((s for s in self.lecture.steps if s.name == name), None)
+        if step is not None:
+            lhs = step.statement.lhs
+            return lhs if step.statement.relation == "=" and isinstance(lhs, (Symbol, Expect, Dot)) else name
+        if isinstance(item, DeclaredInverse):
+            return Inverse(item.of)
+        if isinstance(item, Declared):
+            lhs = item.statement.lhs
+            plain = isinstance(lhs, (Symbol, Expect, Dot)) and item.statement.relation in ("=", ":=")
+            return lhs if plain else item.text or name
+        if re.fullmatch(r"I\w+", name) and name not in self.anchors:
+            return None
+        return getattr(item, "text", "") or name
+
+    def note(self, item: Erratum) -> Note:
+        key = self.lecture.key
+        printed: Inline = (item.printed,) if isinstance(item.printed, Equation) else item.printed
+        proof = Link("proved here", self.anchors[item.proved_by]) if item.proved_by else None
+        if item.proved_by and not self.accepted.get(item.proved_by, False):
+            proof = None
+        return Note(
+            slug(key, "finding", item.source, item.number or "text", item.finding),
+            item.source,
+            visible(item.number),
+            item.finding,
+            FINDINGS[item.finding],  # type: ignore[arg-type]
+            printed,
+            item.text,
+            tuple(_evidence(e) for e in item.evidence),
+            item.true if proof else None,
+            proof,
+        )
+
+
+def _evidence(evidence: Evidence) -> Table:
+    values: list[str | Term | Equation | Link] = []
+    for i, (name, value) in enumerate(evidence.values):
+        values += [", "] if i else []
+        values += [name, f" = {value}"] if isinstance(name, Term) else [f"{name} = {value}"]
+    rows = tuple(((label,), (value,)) for label, value in evidence.results)
+    return Table(("counterexample" if len(rows) > 1 else "evidence", "value"), rows, tuple(values))
