@@ -67,6 +67,10 @@ class Codec:
             for (m, w), c in poly.terms.items()
         }
 
+    def decode(self, terms: Encoded, dimension: str) -> Poly:
+        """Return the polynomial of encoded terms; its type is used for nothing but identities."""
+        return Poly({(self.scalars(m), self.word(w)): c for (m, w), c in terms.items()}, dimension, dimension)
+
     def scalars(self, m: str) -> Scalars:
         """Return the names of encoded scalars, sorted as the kernel wants them."""
         return tuple(sorted(self.names[s] for s in m))

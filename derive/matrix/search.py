@@ -6,13 +6,13 @@ import time
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from derive.kernel import Alphabet, Certificate, Poly, Term, bound
+from derive.kernel import Alphabet, Certificate, Poly, Term, bound, sample
 from derive.matrix.completion import Completion, Step, accumulate
 from derive.matrix.order import Codec, Encoded, weigh
 
 __all__ = ["prove"]
 
-ROUNDS = 100  # of rotation under a trace
+ROUNDS = 100  # of rotation under a trace, or of sampling by deltas
 TRACE = "@"  # tr I of a dimension as a letter: "@n"
 
 
@@ -64,7 +64,7 @@ def prove(
     steps: list[Step] = []
     while True:
         for size, poly in sizes.items():
-            sizes[size], used = completion.reduce(poly, size)
+            sizes[size], used = _reduce(completion, poly, size)
             steps += used
         rest, more = _cyclic(completion, sizes) if trace else (sizes[claim.rows], [])
         if not rest:
@@ -74,6 +74,21 @@ def prove(
             grown = completion.resolve()
             if grown is None or time.monotonic() > deadline:
                 return None
+
+
+def _reduce(completion: Completion, poly: Encoded, dimension: str) -> tuple[Encoded, list[Step]]:
+    """Reduce; where a Dirac delta is left, let it sample its factors, as the kernel does, and reduce again."""
+    codec, steps = completion.codec, list[Step]()
+    for _ in range(ROUNDS):
+        poly, used = completion.reduce(poly, dimension)
+        steps += used
+        if not any(codec.names[s].startswith("δ") for m, _ in poly for s in m):
+            break
+        sampled = codec.encode(sample(codec.decode(poly, dimension)))
+        if sampled == poly:
+            break
+        poly = sampled
+    return poly, steps
 
 
 def _declare(completion: Completion, relations: Mapping[str, Poly]) -> dict[int, tuple[str, bool]]:

@@ -176,6 +176,20 @@ def test_an_overlap_that_an_integral_would_capture_is_left_alone():
     assert prove(claim, s.relations, s.alphabet) is None
 
 
+def test_deltas_sample_what_is_left():
+    s = Setting()
+    s.matrix("L", "n", "m"), s.matrix("R", "m", "m"), s.symmetric("S", "m")
+    correlation = Poly({((), ("R@t,τ",)): 1, (("δ(t,τ)",), ("S@t",)): -1}, "m", "m")
+    s.relations["white"] = correlation
+    both = (("L@t", "R@t,τ", "L'@τ"), ("L@t", "S@t", "L'@t"))
+    claim = Poly({((), both[0]): 1, (("δ(t,τ)",), both[1]): -1}, "n", "n")
+    replay(prove(claim, s.relations, s.alphabet), claim, s.relations, s.alphabet)
+    s.relations["S"] = Poly({((), ("S@t",)): 1, ((), ()): -1}, "m", "m")
+    claim = Poly({((), both[0]): 1, (("δ(t,τ)",), ("L@τ", "L'@τ")): -1}, "n", "n")
+    replay(prove(claim, s.relations, s.alphabet), claim, s.relations, s.alphabet)
+    assert prove(claim.scale(1, ("δ(t,σ)",)), {}, s.alphabet) is None
+
+
 # ------------------------------------------------------------------------------------------------ traces
 def test_traces_of_identities_keep_their_size():
     s = Setting()
