@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from derive.context import Theory, adopt
+from derive.context import DeclaredInverse, Theory, adopt
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
 from derive.rules import (
@@ -311,6 +311,16 @@ class Lecture:
     def step(self, name: str) -> Step:
         """Return the step of that name."""
         return next(s for s in self.steps if s.name == name)
+
+    def rests_on(self, name: str) -> frozenset[str]:
+        """Return the definitions and hypotheses that a step rests on, through lemmas and the reasons of inverses."""
+        step = next((s for s in self.steps if s.name == name), None)
+        item = self.theory.declared.get(name)
+        if step is None and not isinstance(item, DeclaredInverse):
+            return frozenset({name})
+        because = item.because if isinstance(item, DeclaredInverse) else ()
+        below = (*step.uses, *step.proof.links) if step else (because,) if isinstance(because, str) else because
+        return frozenset().union(*map(self.rests_on, below))
 
     def verify(self) -> list[Outcome]:
         """Replay every step with the kernel."""

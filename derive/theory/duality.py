@@ -208,11 +208,11 @@ def _derive_back(b: Builder) -> None:
     images(b, BACK, {"A": A.T, "C": B.T, "P": S, "L": s["K"].T})
     chain = b.chain(Image(BACK, riccati_step(A, C, P, Q, R)))
     chain.to(cost_to_go(A, B, S, Q, R), "by the map")
-    chain.to(S, "the regulator's Riccati equation", ["regulator's Riccati equation"])
+    chain.to(S, "the regulator's Riccati equation", ["steady cost to go"])
     chain.close("image of the observer's Riccati equation")
     chain = b.chain(Image(BACK, optimal_gain(A, C, P, R)))
     chain.to(regulator_gain(A, B, S, R).T, "by the map")
-    chain.to(s["K"].T, "the regulator's gain, transposed", ["regulator's gain"])
+    chain.to(s["K"].T, "the regulator's gain, transposed", ["steady gain"])
     chain.close("image of the observer's gain")
     for name, term in (("Riccati equation", cost_to_go(A, B, S, Q, R)), ("gain", regulator_gain(A, B, S, R))):
         b.state(

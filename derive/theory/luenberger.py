@@ -69,6 +69,11 @@ def gain() -> Step:
     return lecture().step("gain")
 
 
+def optimality() -> Step:
+    """Return the proof that no gain gives a smaller covariance, in the Loewner order."""
+    return lecture().step("Loewner minimum")
+
+
 def riccati() -> Step:
     """Return the proved Riccati difference equation (4)."""
     return lecture().step("Riccati recursion")

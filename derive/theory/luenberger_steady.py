@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from derive.context import Theory
-from derive.terms import Equation, Expect, Glyph, Identity, Image, Zero, block
+from derive.terms import Equation, Expect, Glyph, Identity, Zero, block
 from derive.theory import luenberger_errata as errata
 from derive.theory.builder import Builder, SquareOf
 from derive.theory.luenberger_errata import SOURCE
@@ -16,8 +16,6 @@ from derive.theory.luenberger_formulas import (
     riccati_step,
     riccati_step_with_cross,
 )
-
-LIMIT = "limit"
 
 
 def declare(t: Theory) -> None:
@@ -38,11 +36,8 @@ def declare(t: Theory) -> None:
     t.assume("P >= 0", P, "⪰", text="a covariance")
     t.assume("steady joint noise", block([[Q, S], [S.T, R]]), "⪰", text="a joint covariance")
     t.inverse("Sigma^-1", innovation(C, P, R), "l", symmetric=True, because="steady innovation covariance")
-    old = tuple(s[f"{k}_{{k-1}}"] for k in "PQRS")
-    images = {f"{x.name}_{{k-1}}": x for x in (P, Q, R, S)}
-    t.maps[LIMIT] = {**images, "P_k": P, "L_k": L, "L_k*": L, "Sigma_k^-1": t.symbols["Sigma^-1"]}
-    t.define("steady covariance", P, Image(LIMIT, riccati_step_with_cross(A, C, *old)))
-    t.define("limit of the gain", L, Image(LIMIT, optimal_gain(A, C, old[0], old[2], old[3])))
+    for indexed, limit in (("P_{k-1}", P), ("P_k", P), ("L_k", L)):
+        t.assume(f"{indexed} = {limit.name}", s[indexed], "=", limit, "the steady state is reached", case=True)
     t.fact("A - L C Schur", "schur", A - L * C, "the steady covariance is the stabilising solution", case=True)
     _declare_others(t)
 
@@ -83,11 +78,9 @@ def _derive_limit(b: Builder) -> None:
     b.heading("Infinite horizon")
     b.say("If the noise is stationary,")
     b.given("constant Q", "constant R", "constant S", numbers=("u2", "u2"), source=SOURCE)
-    b.say(
-        "and the covariance tends to a limit ",
-        P,
-        ", then the limit is a fixed point of the recursion. Its innovation covariance,",
-    )
+    b.say("and the covariance has reached a limit ", P, ", then covariance and gain stay the same from step to step,")
+    b.given("P_{k-1} = P", "P_k = P", "L_k = L")
+    b.say("The innovation covariance of the limit has an inverse, because")
     b.given("P >= 0", "R > 0")
     b.positive(
         "steady innovation covariance",
@@ -96,14 +89,21 @@ def _derive_limit(b: Builder) -> None:
         [SquareOf(C, "P >= 0"), SquareOf(Identity("l"), "R > 0")],
         strict=(1, Identity("l")),
     )
-    b.say(
-        "has an inverse. So the limit, which drops the indices, may be taken on both sides of the recursion and of the "
-        "gain:"
-    )
-    b.given("steady covariance", "limit of the gain")
+    steady = ["P_{k-1} = P", "constant Q", "constant R", "constant S", "Sigma_k^-1", "Sigma^-1"]
+    old = tuple(s[f"{k}_{{k-1}}"] for k in "PQRS")
     chain = b.chain(P)
-    chain.to(riccati_step_with_cross(A, C, P, Q, R, S), "limit of the recursion", ["steady covariance"])
+    chain.to(s["P_k"], "steady state", ["P_k = P"])
+    recursion = "Riccati recursion with cross-covariance"
+    chain.to(riccati_step_with_cross(A, C, *old), "Riccati recursion", [recursion])
+    chain.to(riccati_step_with_cross(A, C, P, Q, R, S), "steady state, stationary noise", steady)
     chain.close("Riccati equation with cross-covariance")
+    chain = b.chain(L)
+    chain.to(s["L_k"], "steady state", ["L_k = L"])
+    formula = optimal_gain(A, C, old[0], old[2], old[3])
+    chain.to(formula, "optimal gain", ["optimal gain", "gain with cross-covariance"])
+    chain.to(optimal_gain(A, C, P, R, S), "steady state, stationary noise", steady)
+    chain.close("steady gain with cross-covariance")
+    b.say("Without cross-covariance,")
     b.given("S = 0")
     b.state(
         "Riccati equation",
@@ -112,12 +112,6 @@ def _derive_limit(b: Builder) -> None:
         ["Riccati equation with cross-covariance", "S = 0"],
         number="5",
         source=SOURCE,
-    )
-    b.state(
-        "steady gain with cross-covariance",
-        Equation(L, "=", optimal_gain(A, C, P, R, S)),
-        "limit of the gain",
-        ["limit of the gain"],
     )
     b.state(
         "steady gain",

@@ -9,10 +9,8 @@ from dataclasses import replace
 from functools import cache
 
 from derive.context import Theory
-from derive.terms import Dot, Equation, Glyph, Identity, Image, Symbol, Term, Zero
+from derive.terms import Dot, Equation, Glyph, Identity, Symbol, Term, Zero
 from derive.theory.builder import Builder, SquareOf
-
-LIMIT = "limit"
 
 
 @cache
@@ -99,9 +97,8 @@ def declare_discrete(t: Theory) -> None:
         t.inverse(name, weight(B, cost, R), p, symmetric=True, because=reason)
     t.define("optimal gain", K_k, regulator_gain(A, B, S_k, R))
     t.define("cost to go", earlier, cost_to_go(A, B, S_k, Q, R))
-    t.maps[LIMIT] = {"S_k": S, "S_{k-1}": S, "K_{k-1}": K, "weight_k^-1": t.symbols["weight^-1"]}
-    t.define("limit of the cost", S, Image(LIMIT, cost_to_go(A, B, S_k, Q, R)))
-    t.define("limit of the gain", K, Image(LIMIT, regulator_gain(A, B, S_k, R)))
+    t.define("steady cost to go", S, cost_to_go(A, B, S, Q, R))
+    t.define("steady gain", K, regulator_gain(A, B, S, R))
 
 
 def declare_continuous(t: Theory, steady: str = "") -> None:
@@ -181,12 +178,12 @@ def derive_discrete(b: Builder) -> None:
         [SquareOf(Identity("n"), "Q >= 0"), SquareOf((A - B * K).T, "S_k >= 0"), SquareOf(K.T, "R > 0")],
         using,
     )
-    _derive_limit(b)
+    _derive_steady(b)
 
 
-def _derive_limit(b: Builder) -> None:
+def _derive_steady(b: Builder) -> None:
     s = b.theory.symbols
-    A, B, Q, R, S, K = (s[k] for k in ("A", "B", "Q", "R", "S", "K"))
+    A, B, Q, R, S, K, M = (s[k] for k in ("A", "B", "Q", "R", "S", "K", "M"))
     eye = Identity(B.cols)
     b.say("If the cost to go tends to a limit ", S, " ⪰ 0 when the horizon is far away, then")
     b.positive(
@@ -196,15 +193,13 @@ def _derive_limit(b: Builder) -> None:
         [SquareOf(B.T, "S >= 0"), SquareOf(eye, "R > 0")],
         strict=(1, eye),
     )
-    b.given("limit of the cost", "limit of the gain")
+    b.say("and the limit is a fixed point of the step, with the gain that belongs to it:")
+    b.given("steady cost to go", "steady gain")
     b.state(
-        "regulator's Riccati equation",
-        Equation(S, "=", cost_to_go(A, B, S, Q, R)),
-        "limit of the cost to go",
-        ["limit of the cost"],
-    )
-    b.state(
-        "regulator's gain", Equation(K, "=", regulator_gain(A, B, S, R)), "limit of the gain", ["limit of the gain"]
+        "steady cost of a gain",
+        Equation(cost_of_gain(A, B, M, S, Q, R), "=", S + (M - K).T * weight(B, S, R) * (M - K)),
+        "complete the square in the gain",
+        ["steady cost to go", "steady gain", "weight^-1"],
     )
 
 
