@@ -24,7 +24,7 @@ def read_mapping(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: expected a file, got a folder; name the plant file in it")
     if path.suffix.lower() not in READERS:
         raise InputError(
-            f"{path}: expected a file ending in {', '.join(READERS)}, got {path.suffix or 'no suffix'!r}; "
+            f"{path}: expected a file ending in {', '.join(READERS)}, got {path.suffix or 'no suffix'}; "
             f"{closest(path.suffix.lower(), READERS)}"
         )
     try:

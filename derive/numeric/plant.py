@@ -9,24 +9,15 @@ from typing import Any, cast
 import numpy as np
 
 from derive.errors import InputError
-from derive.numeric.fields import (
-    check_keys,
-    check_shape,
-    positive_definite,
-    positive_semidefinite,
-    read_matrix,
-    read_names,
-    read_text,
-    symmetric,
-)
+from derive.numeric.fields import Fields, closest, positive_semidefinite, read_names, read_text, show, symmetric
 from derive.numeric.modes import Matrix, Time, format_mode, undetectable_mode
+from derive.numeric.noise import GENERAL_FORM, read_noise
 
 __all__ = ["Plant", "example_plant", "load_plant", "plant_from_mapping"]
 
 SYNONYMS = {"Q": "W", "R": "V", "S": "N"}
-GENERAL = ("B_d", "D_d", "D_r", "S_dd", "S_rr", "S_dr")
 KEYS = (
-    *("time", "A", "C", "W", "V", "N", *SYNONYMS, *GENERAL),
+    *("time", "A", "C", "W", "V", "N", *GENERAL_FORM),
     *("M", "B", "D_u", "P0", "dt", "name", "source", "states", "outputs", "units"),
 )
 
@@ -137,26 +128,22 @@ def plant_from_mapping(data: Mapping[str, Any], name: str = "plant") -> Plant:
         InputError: with one line that says what was expected, what was got and the remedy.
     """
     if not isinstance(data, Mapping):
+        raise InputError(f"plant: expected keys with values, got {type(data).__name__}; give A, C, W, V by name")
+    fields = Fields.of(data, KEYS, SYNONYMS)
+    time = _time(fields)
+    A = fields.matrix("A", None, None, "the state matrix")
+    n = len(A)
+    if A.shape != (n, n):
         raise InputError(
-            f"plant: expected a mapping of keys to values, got {type(data).__name__}; give A, C, W, V by name"
+            f"A: expected a square matrix, got shape {A.shape}; A maps the state to its rate or next value"
         )
-    check_keys(data, KEYS)
-    data = _without_synonyms({key: value for key, value in data.items() if value is not None})
-    time = _time(data)
-    A = read_matrix("A", _required(data, "A"))
-    n = check_shape("A", A, (len(A), len(A))).shape[0]
-    C = read_matrix("C", _required(data, "C"))
-    l = check_shape("C", C, (len(C), n)).shape[0]  # noqa: E741 (the field's letter for the number of outputs)
-    W, V, N = _noise(data, n, l)
-    mode = undetectable_mode(A, C, time)
-    if mode is not None:
-        raise InputError(
-            f"(A, C): not detectable: mode {format_mode(mode)} is unobservable; "
-            "measure an output that sees it, or remove it from the plant"
-        )
-    states = read_names("states", data["states"], n) if "states" in data else _numbered("x", n)
-    outputs = read_names("outputs", data["outputs"], l) if "outputs" in data else _numbered("y", l)
-    B, D_u = _inputs(data, n, l)
+    C = fields.matrix("C", None, n, "the output matrix")
+    l = len(C)  # noqa: E741 (the field's letter for the number of outputs)
+    W, V, N = read_noise(fields, n, l)
+    _check_detectable(A, C, time)
+    B = fields.optional("B", n, None)
+    D_u = fields.optional("D_u", l, None if B is None else B.shape[1])
+    states, outputs = _names(fields, "states", "x", n), _names(fields, "outputs", "y", l)
     return Plant(
         time=time,
         A=_frozen(A),
@@ -164,126 +151,64 @@ def plant_from_mapping(data: Mapping[str, Any], name: str = "plant") -> Plant:
         W=_frozen(W),
         V=_frozen(V),
         N=_frozen(N),
-        M=_frozen(_weight(data, "M", n) if "M" in data else np.eye(n)),
-        B=B,
-        D_u=D_u,
-        P0=_frozen(_weight(data, "P0", n)) if "P0" in data else None,
-        dt=_period(data, time),
-        name=read_text("name", data["name"]) if "name" in data else name,
-        source=read_text("source", data["source"]) if "source" in data else "",
+        M=_frozen(_weight(fields, "M", np.eye(n))),
+        B=None if B is None else _frozen(B),
+        D_u=None if D_u is None else _frozen(D_u),
+        P0=_frozen(_weight(fields, "P0", np.eye(n))) if "P0" in fields else None,
+        dt=_period(fields, time),
+        name=read_text("name", fields.values.get("name", name)),
+        source=read_text("source", fields.values.get("source", "")),
         states=states,
         outputs=outputs,
-        units=_units(data.get("units", {}), (*states, *outputs)),
+        units=_units(fields.values.get("units", {}), (*states, *outputs)),
     )
 
 
-def _required(data: Mapping[str, Any], key: str) -> Any:
-    if key not in data:
-        raise InputError(f"{key}: missing key, expected {_MEANING[key]}; add it")
-    return data[key]
-
-
-_MEANING = {
-    "time": '"continuous" or "discrete"',
-    "A": "the state matrix",
-    "C": "the output matrix",
-    "W": "the process noise W (or Q, or B_d with S_dd)",
-    "V": "the measurement noise V (or R, or D_r with S_rr)",
-    "B_d": "the disturbance matrix of the general form",
-    "S_dd": "the intensity of d in the general form",
-    "D_r": "the matrix of r in the general form",
-    "S_rr": "the intensity of r in the general form",
-}
-
-
-def _without_synonyms(data: dict[str, Any]) -> dict[str, Any]:
-    for other, key in SYNONYMS.items():
-        if other in data and key in data:
-            raise InputError(f"{other}: expected one of {key} and {other}, got both; they mean the same, keep one")
-    return {SYNONYMS.get(key, key): value for key, value in data.items()}
-
-
-def _time(data: Mapping[str, Any]) -> Time:
-    time = _required(data, "time")
-    if time not in ("continuous", "discrete"):
-        raise InputError(f'time: expected "continuous" or "discrete", got {time!r:.40}; choose one')
+def _time(fields: Fields) -> Time:
+    time = fields.required("time", '"continuous" or "discrete"')
+    if not isinstance(time, str) or time not in ("continuous", "discrete"):
+        raise InputError(f'time: expected "continuous" or "discrete", got {show(time)}; choose one')
     return cast(Time, time)
 
 
-def _noise(data: Mapping[str, Any], n: int, l: int) -> tuple[Matrix, Matrix, Matrix]:  # noqa: E741
-    """Return W, V, N, from the keys of that name or from the general form."""
-    if any(key in data for key in GENERAL):
-        given = [key for key in ("W", "V", "N") if key in data]
-        if given:
-            raise InputError(f"{given[0]}: expected W, V, N or the general form B_d, S_dd, ..., got both; keep one")
-        W, V, N = _general_form(data, n, l)
-    else:
-        W = check_shape("W", read_matrix("W", _required(data, "W")), (n, n))
-        V = check_shape("V", read_matrix("V", _required(data, "V")), (l, l))
-        N = check_shape("N", read_matrix("N", data["N"]), (n, l)) if "N" in data else np.zeros((n, l))
-    W = positive_semidefinite("W", symmetric("W", W))
-    V = positive_definite("V", symmetric("V", V))
-    _joint("[[W, N], [N', V]]", W, N, V, "the cross term is too large for W and V")
-    return W, V, N
+def _check_detectable(A: Matrix, C: Matrix, time: Time) -> None:
+    mode = undetectable_mode(A, C, time)
+    if mode is not None:
+        raise InputError(
+            f"(A, C): not detectable: mode {format_mode(mode)} is unobservable; "
+            "measure an output that sees it, or remove it from the plant"
+        )
 
 
-def _general_form(data: Mapping[str, Any], n: int, l: int) -> tuple[Matrix, Matrix, Matrix]:  # noqa: E741
-    """Reduce the general form: W = B_d S_dd B_d', N = B_d (S_dd D_d' + S_dr D_r'), V the intensity of D_d d + D_r r."""
-    B_d = read_matrix("B_d", _required(data, "B_d"))
-    p = check_shape("B_d", B_d, (n, B_d.shape[1])).shape[1]
-    S_dd = symmetric("S_dd", check_shape("S_dd", read_matrix("S_dd", _required(data, "S_dd")), (p, p)))
-    D_r = read_matrix("D_r", _required(data, "D_r"))
-    q = check_shape("D_r", D_r, (l, D_r.shape[1])).shape[1]
-    S_rr = symmetric("S_rr", check_shape("S_rr", read_matrix("S_rr", _required(data, "S_rr")), (q, q)))
-    D_d = check_shape("D_d", read_matrix("D_d", data["D_d"]), (l, p)) if "D_d" in data else np.zeros((l, p))
-    S_dr = check_shape("S_dr", read_matrix("S_dr", data["S_dr"]), (p, q)) if "S_dr" in data else np.zeros((p, q))
-    _joint("[[S_dd, S_dr], [S_dr', S_rr]]", S_dd, S_dr, S_rr, "the cross term is too large for S_dd and S_rr")
-    cross = D_d @ S_dr @ D_r.T
-    V = D_d @ S_dd @ D_d.T + cross + cross.T + D_r @ S_rr @ D_r.T
-    return B_d @ S_dd @ B_d.T, V, B_d @ (S_dd @ D_d.T + S_dr @ D_r.T)
+def _weight(fields: Fields, key: str, default: Matrix) -> Matrix:
+    matrix = fields.optional(key, len(default), len(default))
+    return default if matrix is None else positive_semidefinite(key, symmetric(key, matrix), "correct its entries")
 
 
-def _joint(name: str, first: Matrix, cross: Matrix, second: Matrix, remedy: str) -> None:
-    positive_semidefinite(name, np.block([[first, cross], [cross.T, second]]), remedy)
+def _names(fields: Fields, key: str, letter: str, count: int) -> tuple[str, ...]:
+    if key in fields:
+        return read_names(key, fields.values[key], count)
+    return tuple(f"{letter}{i}" for i in range(1, count + 1))
 
 
-def _weight(data: Mapping[str, Any], key: str, n: int) -> Matrix:
-    matrix = check_shape(key, read_matrix(key, data[key]), (n, n))
-    return positive_semidefinite(key, symmetric(key, matrix), "correct its entries")
-
-
-def _inputs(data: Mapping[str, Any], n: int, l: int) -> tuple[Matrix | None, Matrix | None]:  # noqa: E741
-    B = read_matrix("B", data["B"]) if "B" in data else None
-    D_u = read_matrix("D_u", data["D_u"]) if "D_u" in data else None
-    if B is not None:
-        check_shape("B", B, (n, B.shape[1]))
-    if D_u is not None:
-        check_shape("D_u", D_u, (l, D_u.shape[1] if B is None else B.shape[1]))
-    return (None if B is None else _frozen(B)), (None if D_u is None else _frozen(D_u))
-
-
-def _period(data: Mapping[str, Any], time: Time) -> float | None:
-    if "dt" not in data:
+def _period(fields: Fields, time: Time) -> float | None:
+    if "dt" not in fields:
         return None
-    dt = read_matrix("dt", data["dt"])
-    if dt.size != 1 or dt[0, 0] <= 0:
-        raise InputError(f"dt: expected a positive number of seconds, got {data['dt']!r:.40}; give the sampling period")
+    dt = float(fields.matrix("dt", 1, 1)[0, 0])
+    if dt <= 0:
+        raise InputError(f"dt: expected a positive number of seconds, got {dt:g}; give the sampling period")
     if time == "continuous":
         raise InputError('dt: expected only with time = "discrete", got "continuous"; remove dt or change time')
-    return float(dt[0, 0])
+    return dt
 
 
 def _units(value: Any, names: tuple[str, ...]) -> Mapping[str, str]:
     if not isinstance(value, Mapping):
-        raise InputError(
-            f'units: expected a table of units by name, got {value!r:.40}; write units = {{ {names[0]} = "m" }}'
-        )
-    check_keys(value, names)
+        raise InputError(f'units: expected units by name, got {show(value)}; write units = {{ {names[0]} = "m" }}')
+    for key in value:
+        if key not in names:
+            raise InputError(f"units: expected names of states or outputs, got {show(key)}; {closest(str(key), names)}")
     return {key: read_text(f"units.{key}", unit) for key, unit in value.items()}
-
-
-def _numbered(letter: str, count: int) -> tuple[str, ...]:
-    return tuple(f"{letter}{i}" for i in range(1, count + 1))
 
 
 def _frozen(matrix: Matrix) -> Matrix:
