@@ -195,8 +195,10 @@ def level(term: Term) -> int:
     if isinstance(term, Sum) or signed(term)[0]:
         return SUM
     match term:
-        case Product(factors):
-            return PRODUCT if len(factors) > 1 else level(factors[0])
+        case Product((only,)):
+            return level(only)
+        case Product():
+            return PRODUCT
         case Dot(Symbol() as symbol):
             return level(symbol)
         case Dot() | Integral() | Gradient():
@@ -262,7 +264,8 @@ def layout(term: Term | Equation) -> Box:
 def label(text: str) -> Box:
     """Lay out an index or a time: letters, numbers and signs; digits right after a letter are its subscript."""
     items: list[Box] = []
-    for letter, index, digits, sign in re.findall(r"(\\[A-Za-z]+|[^\W\d_])(\d*)|(\d+)|(\S)", text):
+    found: list[tuple[str, str, str, str]] = re.findall(r"(\\[A-Za-z]+|[^\W\d_])(\d*)|(\d+)|(\S)", text)
+    for letter, index, digits, sign in found:
         if letter:
             base = Letter(GREEK.get(letter.lstrip("\\"), letter.lstrip("\\")))
             items.append(Scripted(base, Digits(index)) if index else base)

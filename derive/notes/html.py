@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
-from derive.latex.layout import ADDITIVE, Box, Op, Row as BoxRow, layout
+from derive.latex.layout import ADDITIVE, Box, Op, layout
+from derive.latex.layout import Row as BoxRow
 from derive.latex.mathml import math, mathml
 from derive.notes.font import embedded
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table
@@ -31,7 +32,7 @@ def html(document: Document) -> str:
         title=escape(document.title),
         subtitle=_inline(document.subtitle),
         count=f"{document.proved} of {document.total} steps proved and replayed" if document.total else "",
-        legend="".join(f"<li>{_badge(k)} {escape(v)}</li>" for k, v in LEGEND.items() if f'badge {k}' in body),
+        legend="".join(f"<li>{_badge(k)} {escape(v)}</li>" for k, v in LEGEND.items() if f"badge {k}" in body),
         contents=_contents(sections),
         body=body,
         style="{style}",

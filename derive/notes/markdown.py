@@ -8,7 +8,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from derive.latex.layout import Op, Row as BoxRow, layout
+from derive.latex.layout import Op, layout
+from derive.latex.layout import Row as BoxRow
 from derive.latex.tex import latex, tex
 from derive.notes.html import SYMBOLS
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table

@@ -30,8 +30,8 @@ __all__ = [
     "Table",
     "document_of",
     "join",
-    "visible",
     "slug",
+    "visible",
 ]
 
 Badge = Literal["proved", "definition", "hypothesis", "refuted", "incomplete", "not proved", ""]

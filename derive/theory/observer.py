@@ -458,10 +458,12 @@ def _derive_gain(b: Builder) -> None:
         "u5",
         "silent",
         ("The optimal gain is not given.",),
-        "Completing the square and comparing gives it, with the cross terms.",
+        "Completing the square and comparing shows that no gain does better than ",
+        Ls,
+        ", cross terms included:",
         proved_by="optimal gain",
-        true=b.theory.statement("L*"),
-    )  # type: ignore[union-attr]
+        true=b.steps["optimal gain"].statement,
+    )
     b.heading("The same from the trace")
     b.state(
         "gradient",

@@ -1,0 +1,137 @@
+"""Notes: self-contained pages whose badges come from the replay."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+import derive
+from derive.derivation import Outcome, Paragraph
+from derive.errors import InputError
+from derive.notes import page, write_notes
+from derive.notes.html import html
+from derive.notes.markdown import markdown
+from derive.notes.model import Display, Document, Note, document_of
+from derive.theory import LECTURES, lecture
+
+
+@pytest.fixture(scope="module")
+def all_notes() -> Document:
+    return page(list(LECTURES))
+
+
+@pytest.fixture(scope="module")
+def whole_page(all_notes) -> str:
+    return html(all_notes)
+
+
+class Tags(HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.seen, self.open = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.seen.append((tag, dict(attrs)))
+        if tag not in ("meta", "br", "mspace", "link", "img"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.seen.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+
+def test_the_page_is_whole_and_asks_for_nothing(whole_page):
+    tags = Tags()
+    tags.feed(whole_page)
+    assert tags.open == []
+    names = {tag for tag, _ in tags.seen}
+    assert not names & {"script", "link", "img", "iframe", "object"}
+    addresses = [
+        v for _, attrs in tags.seen for k, v in attrs.items() if k in ("src", "href") and not v.startswith("#")
+    ]
+    assert addresses == []
+    assert set(re.findall(r"url\((\w+):", whole_page)) == {"data"}
+    assert "@import" not in whole_page
+
+
+def test_every_link_leads_to_a_row(whole_page):
+    ids = re.findall(r' id="([^"]+)"', whole_page)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'href="#([^"]+)"', whole_page)) <= set(ids)
+
+
+def test_the_page_is_small_enough(whole_page):
+    assert len(whole_page.encode()) <= 600_000
+
+
+def test_all_steps_are_proved(all_notes):
+    assert all_notes.proved == all_notes.total > 200
+
+
+def test_a_step_that_is_not_accepted_is_not_shown_as_proved():
+    item = lecture("observer")
+    outcomes = item.verify()
+    broken = [replace(o, accepted=False, message="no") if o.step == "observer.4" else o for o in outcomes]
+    document = document_of(item, broken)
+    rows = [r for b in document.blocks if isinstance(b, Display) for r in b.rows if r.badge in ("proved", "not proved")]
+    assert [r.id for r in rows if r.badge == "not proved"] == ["observer-observer.4"]
+    assert document.proved == document.total - 1
+    assert "not proved" in html(document)
+
+
+def test_without_outcomes_nothing_is_proved():
+    document = document_of(lecture("observer"), [])
+    badges = {r.badge for b in document.blocks if isinstance(b, Display) for r in b.rows}
+    assert "proved" not in badges
+    assert all(note.proof is None and note.true is None for note in document.blocks if isinstance(note, Note))
+    assert "proved here" not in html(document)
+
+
+def test_a_chain_that_is_rejected_takes_its_last_row_with_it():
+    item = lecture("observer")
+    closed = [Outcome(o.step, o.step != "error dynamics") for o in item.verify()]
+    rows = {r.id: r.badge for b in document_of(item, closed).blocks if isinstance(b, Display) for r in b.rows}
+    assert rows["observer-observer.6"] == "not proved"
+
+
+def test_text_is_escaped():
+    item = lecture("observer")
+    nasty = replace(item, title="<script>&", items=(Paragraph(("a < b & $c$ *d* <img src=x>",)),))
+    document = document_of(nasty, [])
+    assert "<script>" not in html(document)
+    assert "<img" not in html(document)
+    assert r"\<img" in markdown(document)
+    assert r"\$c\$" in markdown(document)
+
+
+def test_markdown_shows_numbers_reasons_and_badges():
+    text = markdown(page(["observer"]))
+    assert r"\qquad\text{(31.10)}" in text
+    assert "✓ *proved* insert both outputs and collect" in text
+    assert text.count("$$") % 2 == 0
+    assert text.count(r"\begin{aligned}") == text.count(r"\end{aligned}") > 10
+
+
+@pytest.mark.parametrize("name", ["o.html", "o.md", "o.json"])
+def test_notes_are_written_by_suffix(tmp_path, name):
+    write_notes(["observer"], tmp_path / name)
+    text = (tmp_path / name).read_text(encoding="utf-8")
+    assert [p.name for p in tmp_path.iterdir()] == [name]
+    if name.endswith("json"):
+        assert json.loads(text)["schema"] == "derive-derivation/1"
+    else:
+        assert "31.10" in text
+
+
+def test_an_unknown_suffix_is_one_clear_line(tmp_path):
+    with pytest.raises(InputError, match=r"expected a name that ends in .html, .json, .md, got '.odt'"):
+        write_notes(["observer"], tmp_path / "o.odt")
+    with pytest.raises(InputError, match=r"lecture 'obs': unknown"):
+        derive.notes.write_notes(["obs"], tmp_path / "o.md")
+    assert list(tmp_path.iterdir()) == []
