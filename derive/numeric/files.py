@@ -75,13 +75,14 @@ def _npz(path: Path) -> dict[str, Any]:
     import zipfile
 
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            if not isinstance(archive, np.lib.npyio.NpzFile):
-                raise InputError(f"{path}: expected an .npz archive, got a single array; write it with numpy.savez")
+        archive = np.load(path, allow_pickle=False)
+        if not isinstance(archive, np.lib.npyio.NpzFile):
+            raise InputError(f"{path}: expected an .npz archive, got a single array; write it with numpy.savez")
+        with archive:
             return {key: _plain(archive[key]) for key in archive.files}
+    except InputError:
+        raise
     except (ValueError, EOFError, zipfile.BadZipFile) as error:
-        if isinstance(error, InputError):
-            raise
         raise InputError(
             f"{path}: expected an .npz archive of numbers and texts, got an error: {_line(error)}; "
             "write it with numpy.savez"
