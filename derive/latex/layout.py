@@ -1,6 +1,6 @@
 """Layout of terms: order, signs, parentheses, accents and scripts, decided once for every printer.
 
-``layout`` turns a term or equation into boxes. A printer (tex.py, mathml.py, plain.py) only knows the nine kinds of box.
+``layout`` turns a term or equation into boxes. A printer (tex.py, mathml.py, plain.py) knows the nine kinds of box.
 Parentheses follow the precedence sum < open operator < product < power < atom, and appear only where they are needed.
 """
 
