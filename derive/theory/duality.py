@@ -29,7 +29,7 @@ EYE = Identity("l")
 def theory() -> Theory:
     """Return the theory ``duality``: regulator and observer of one plant size, in discrete and continuous time."""
     t = Theory(THEORY, "Regulator and observer")
-    regulator.declare_plant(t, "l")
+    regulator.declare_plant(t, "l", "every input costs, every output is noisy")
     regulator.declare_discrete(t)
     regulator.declare_continuous(t, "_inf")
     t.matrix("C", "l", "n", meaning="output matrix")
@@ -140,7 +140,8 @@ def _derive_observer(b: Builder) -> None:
     s = b.theory.symbols
     C, R, P, before = (s[k] for k in ("C", "R", "P", "P_{k-1}"))
     b.heading("The observer in discrete time")
-    b.say("The optimal observer, as the lecture on the Luenberger observer derives it, has the equations")
+    b.say("The covariances of the optimal observer, and those of its innovation, are")
+    b.given("P_{k-1} >= 0", "P >= 0")
     for P_, name in ((before, "innovation"), (P, "steady innovation")):
         b.positive(
             name,
@@ -149,6 +150,7 @@ def _derive_observer(b: Builder) -> None:
             [SquareOf(C, f"{P_.name} >= 0"), SquareOf(EYE, "R > 0")],
             strict=(1, EYE),
         )
+    b.say("and its equations, as the lecture on the Luenberger observer derives them,")
     b.given("Riccati recursion", "gain of the observer", "Riccati equation", "steady gain of the observer")
 
 

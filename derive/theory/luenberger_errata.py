@@ -217,8 +217,8 @@ def steady_gain(b: Builder) -> None:
         "u3",
         "false",
         Equation(L, "=", printed),
-        "As in (3) the state matrix is missing. An observer with the printed gain may diverge: here the error grows by "
-        "its factor at every step.",
+        "As in (3) the state matrix is missing. An observer with the printed gain may diverge: here its error grows at "
+        "every step by the factor shown.",
         evidence=(
             evidence(
                 b,

@@ -193,7 +193,9 @@ def _derive_monotonicity(b: Builder) -> None:
     A, C, Q, R, S = (s[k] for k in ("A", "C", "Q", "R", "S"))
     (P_1, L_1), (P_2, L_2) = ((s[f"P_{i}"], s[f"L_{i}"]) for i in "12")
     b.heading("The recursion keeps the order")
-    b.say("Start the recursion from two covariances, and compare what one step makes of them.")
+    b.say("Start the recursion from two covariances,")
+    b.given("P_1 >= 0", "P_2 >= 0")
+    b.say("and compare what one step makes of them.")
     for i, P in (("1", P_1), ("2", P_2)):
         b.positive(
             f"innovation covariance of P_{i}",

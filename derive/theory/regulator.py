@@ -69,13 +69,13 @@ def cost_rate(A: Term, B: Term, S: Term, Q: Term, R: Term) -> Term:
 
 
 # ------------------------------------------------------------------------------------------------ theories
-def declare_plant(t: Theory, inputs: str) -> None:
-    """Declare the matrices of plant and cost; ``inputs`` names the dimension of the input."""
+def declare_plant(t: Theory, inputs: str, why: str = "every input costs") -> None:
+    """Declare the matrices of plant and cost; ``inputs`` names the dimension of the input, ``why`` R > 0."""
     t.matrix("A", "n", "n", meaning="state matrix")
     t.matrix("B", "n", inputs, meaning="input matrix")
     t.assume("Q >= 0", t.matrix("Q", "n", "n", symmetric=True, meaning="cost of the state"), "⪰", text="a cost")
     R = t.matrix("R", inputs, inputs, symmetric=True, meaning="cost of the input")
-    t.assume("R > 0", R, "≻", text="every input costs")
+    t.assume("R > 0", R, "≻", text=why)
 
 
 def declare_discrete(t: Theory) -> None:
@@ -140,7 +140,9 @@ def derive_discrete(b: Builder) -> None:
     b.given("plant")
     b.say("at the cost ", x.T * Q * x + u.T * R * u, " a step, with")
     b.given("Q >= 0", "R > 0")
-    b.say("Let ", after.T * S_k * after, " be the least cost from the next step on, ", S_k, " ⪰ 0. The matrix")
+    b.say("Let ", after.T * S_k * after, " be the least cost from the next step on,")
+    b.given("S_k >= 0")
+    b.say("The matrix")
     b.positive(
         "input weight",
         Equation(weight(B, S_k, R), "≻", Zero("", "")),
@@ -185,7 +187,9 @@ def _derive_steady(b: Builder) -> None:
     s = b.theory.symbols
     A, B, Q, R, S, K, M = (s[k] for k in ("A", "B", "Q", "R", "S", "K", "M"))
     eye = Identity(B.cols)
-    b.say("If the cost to go tends to a limit ", S, " ⪰ 0 when the horizon is far away, then")
+    b.say("If the cost to go tends to a limit when the horizon is far away,")
+    b.given("S >= 0")
+    b.say("then the limit of the weight has an inverse too,")
     b.positive(
         "steady input weight",
         Equation(weight(B, S, R), "≻", Zero("", "")),

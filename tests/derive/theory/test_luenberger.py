@@ -9,12 +9,12 @@ from itertools import product
 import pytest
 
 from derive.context import Declared, DeclaredFact, Theory
-from derive.derivation import learn
+from derive.derivation import Given, learn
 from derive.kernel import Rejected
 from derive.matrix.hypotheses import Hypotheses
 from derive.matrix.refute import refute
 from derive.terms import Equation, Expect, Glyph, Gradient, Identity, Inverse, Trace, Zero, lower
-from derive.theory import luenberger
+from derive.theory import duality, luenberger
 from derive.theory.builder import Builder, NotDerived, SquareOf
 from derive.theory.exact import value
 from derive.theory.luenberger_formulas import any_gain, innovation, optimal_gain, riccati_step, riccati_step_with_cross
@@ -78,6 +78,16 @@ def s():
 @pytest.mark.parametrize("name", RESTS_ON)
 def test_what_a_theorem_rests_on(lecture, name):
     assert lecture.rests_on(name) == RESTS_ON[name]
+
+
+@pytest.mark.parametrize("module", [luenberger, duality])
+def test_what_is_used_is_shown(module):
+    """Every definition and hypothesis that a step rests on is displayed in the lecture."""
+    item = module.lecture()
+    shown = {row.name for block_ in item.items if isinstance(block_, Given) for row in block_.rows}
+    for step in item.steps:
+        equations = {n for n in item.rests_on(step.name) if isinstance(item.theory.declared.get(n), Declared)}
+        assert equations <= shown, step.name
 
 
 def test_results_are_functions():
