@@ -246,6 +246,8 @@ def layout(term: Term | Equation) -> Box:
             return Digits("0")
         case Sum(addends):
             return _sum(addends)
+        case Transpose(Inverse(body)):
+            return _power(body, row((Op("−", "tight"), Letter(TOP))))
         case Transpose(body):
             return _power(body, Op(TOP, "tight"))
         case Inverse(body):

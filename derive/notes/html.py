@@ -10,10 +10,12 @@ from importlib.resources import files
 from derive.latex.layout import ADDITIVE, Box, Op, layout
 from derive.latex.layout import Row as BoxRow
 from derive.latex.mathml import math, mathml
+from derive.latex.plain import plain
 from derive.notes.font import embedded
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table
 from derive.terms import Equation, Sum, Term
 
+LONG = 36  # characters of a left side that leaves no room for the right side beside it
 SYMBOLS = {"proved": "✓", "definition": "≔", "hypothesis": "∗", "refuted": "✗", "incomplete": "!", "not proved": "?"}
 LEGEND = {
     "proved": "a certificate was found and replayed by the kernel",
@@ -87,7 +89,8 @@ def _block(block: Block) -> str:
         case Para(text):
             return f"<p>{_inline(text)}</p>"
         case Display(rows):
-            return f'<div class="eqs">{"".join(map(_row, rows))}</div>'
+            long = any(r.lhs is not None and len(plain(r.lhs)) > LONG for r in rows)
+            return f'<div class="eqs{" long" if long else ""}">{"".join(map(_row, rows))}</div>'
         case Table():
             return _table(block)
         case Figure(svg, caption, alt):
@@ -126,8 +129,8 @@ def _badge(badge: str) -> str:
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(h)}</th>" for h in table.head)
     rows = "".join(f"<tr>{''.join(f'<td>{_inline(c)}</td>' for c in row)}</tr>" for row in table.rows)
-    caption = f"<caption>{_inline(table.caption)}</caption>" if table.caption else ""
-    return f'<div class="wide"><table>{caption}<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
+    caption = f'<p class="caption">{_inline(table.caption)}</p>' if table.caption else ""
+    return f'{caption}<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
 
 
 def _note(note: Note) -> str:

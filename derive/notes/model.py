@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from derive.context import Declared, DeclaredInverse
+from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Step
 from derive.terms import Dot, Equation, Expect, Inverse, Symbol, Term
 
@@ -48,7 +48,7 @@ SOURCES = {
 class Link:
     """A reference to a row of the page, by a label."""
 
-    label: str | Term
+    label: str | Term | Equation
     target: str
 
 
@@ -261,7 +261,7 @@ class _Layout:
             out.append(Link(label, target) if target else label)
         return tuple(out)
 
-    def label(self, name: str) -> str | Term | None:
+    def label(self, name: str) -> str | Term | Equation | None:
         """Return how a declaration or lemma is called in running text: its number, its symbol, or its name."""
         if visible(self.numbers.get(name, "")):
             return f"({self.numbers[name]})"
@@ -274,11 +274,12 @@ class _Layout:
             return Inverse(item.of)
         if isinstance(item, Declared):
             lhs = item.statement.lhs
-            plain = isinstance(lhs, (Symbol, Expect, Dot)) and item.statement.relation in ("=", ":=")
-            return lhs if plain else item.text or name
+            if item.statement.relation in ("⪰", "≻"):
+                return item.statement
+            return lhs if isinstance(lhs, (Symbol, Expect, Dot)) else item.text or name
         if re.fullmatch(r"I\w+", name) and name not in self.anchors:
             return None
-        return getattr(item, "text", "") or name
+        return f"“{item.text}”" if isinstance(item, DeclaredFact) and item.text else name
 
     def note(self, item: Erratum) -> Note:
         key = self.lecture.key
