@@ -92,6 +92,43 @@ def aligned(rows: list[dict[str, str | int]]) -> str:
 
 
 @cli.command()
+@click.option("-o", "folder", default="tour", show_default=True, type=click.Path(path_type=Path), help="Folder.")
+def tour(folder: Path) -> int:
+    """Write notes of every lecture, the findings on their sources and one plant validated by every route.
+
+    The folder then holds index.html, which opens in a browser without network, index.md, the figures, and
+    certificates/*.json.
+    """
+    from derive.files import make_folder
+
+    make_folder(folder)
+    with progress("starting") as show:
+        from derive.numeric.plant import example_plant
+        from derive.tour import write_tour
+        from lmi.validation import validate
+
+        def validation(plant: Any) -> Any:
+            return validate(plant, progress=lambda route: show(f"validating {plant.name}: {route}")).as_dict()
+
+        summary = write_tour(folder, example_plant(), validation, progress=show)
+    for line in summary.lines():
+        click.echo(line)
+    return 0 if summary.expected else REFUTED
+
+
+@cli.command()
+@click.argument("lectures", nargs=-1, required=True, metavar="LECTURE...")
+@click.option("-o", "path", required=True, type=click.Path(path_type=Path), help="File; .md, .html or .json.")
+@click.option("--to", "flavour", type=click.Choice(["gfm"]), help="Flavour of Markdown.")
+def notes(lectures: tuple[str, ...], path: Path, flavour: str | None) -> int:
+    """Write the notes of each LECTURE (see `derive list`) to a file whose suffix chooses the format."""
+    from derive.handout import write_notes
+
+    with progress("deriving") as show:
+        return 0 if write_notes(lectures, path, flavour, show) else REFUTED
+
+
+@cli.command()
 @click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path))
 def verify(files: tuple[Path, ...]) -> int:
     """Replay the certificates in each FILE with the kernel and the installed theories."""

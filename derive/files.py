@@ -8,7 +8,7 @@ from pathlib import Path
 
 from derive.errors import InputError
 
-__all__ = ["make_folder", "read_limited", "write"]
+__all__ = ["check_place", "make_folder", "read_limited", "write"]
 
 
 def write(path: Path, content: str | bytes) -> None:
@@ -17,10 +17,7 @@ def write(path: Path, content: str | bytes) -> None:
     Raises:
         InputError: the folder does not exist, or the file cannot be written.
     """
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: expected an existing folder, got {str(path.parent)!r}; make it first")
-    if path.is_dir():
-        raise InputError(f"{path}: expected a file name, got a folder; name a file in it")
+    check_place(path)
     data = content.encode() if isinstance(content, str) else content
     try:
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
@@ -34,6 +31,18 @@ def write(path: Path, content: str | bytes) -> None:
             raise
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from None
+
+
+def check_place(path: Path) -> None:
+    """Check that a file can be at this path, before long work on what goes there.
+
+    Raises:
+        InputError: the folder does not exist, or a folder has that name.
+    """
+    if not path.parent.is_dir():
+        raise InputError(f"{path}: expected an existing folder, got {str(path.parent)!r}; make it first")
+    if path.is_dir():
+        raise InputError(f"{path}: expected a file name, got a folder; name a file in it")
 
 
 def make_folder(path: Path) -> None:
