@@ -247,7 +247,7 @@ def layout(term: Term | Equation) -> Box:
         case Sum(addends):
             return _sum(addends)
         case Transpose(Inverse(body)):
-            return _power(body, row((Op("−", "tight"), Letter(TOP))))
+            return _power(body, row((Op("−", "tight"), Op(TOP, "tight"))))
         case Transpose(body):
             return _power(body, Op(TOP, "tight"))
         case Inverse(body):

@@ -40,6 +40,7 @@ TABLE = [
     ((A * B).T, r"(A B)^\top"),
     ((C * P * C.T + R).inv, r"(C P C^\top + R)^{-1}"),
     (A.inv, "A^{-1}"),
+    ((A - B).inv.T, r"(A - B)^{-\top}"),
     (A - (B - C), "A - (B - C)"),
     (A + Neg(B), "A - B"),
     (Neg(A + B), "-(A + B)"),
