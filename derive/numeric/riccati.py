@@ -188,7 +188,7 @@ def _kleinman(form: NormalForm) -> Matrix:
     K, P = stabilising_gain(F, C, form.time), np.full(F.shape, np.nan)
     best = np.inf
     for _ in range(KLEINMAN_STEPS):
-        if np.any(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) >= 0):
+        if not np.isfinite(K).all() or np.any(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) >= 0):
             break
         better = error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
         if not np.trace(better) < best:

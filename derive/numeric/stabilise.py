@@ -32,22 +32,31 @@ def stabilising_gain(F: Matrix, C: Matrix, time: Time) -> Matrix:
         C: output matrix (l, n), (F, C) detectable.
         time: "continuous" or "discrete".
 
+    Returns:
+        The gain, not a number when a mode to move is not seen.
+
     Source: R. W. Bass; stated for the regulator by E. S. Armstrong, An extension of Bass' algorithm for stabilizing
         linear continuous constant systems, IEEE Trans. Automat. Control 20 (1975) 153-154.
     """
     basis, rows = _unstable_part(F, time)
     if basis.shape[1] == 0:
         return np.zeros((len(F), len(C)))
-    T, G = rows @ F @ basis, C @ basis
+    rate = max(spectral_scale(F, time), float(np.linalg.norm(C, 2)))
+    try:
+        return basis @ _moving_gain(rows @ F @ basis, C @ basis, rate, time)
+    except np.linalg.LinAlgError:
+        return np.full((len(F), len(C)), np.nan)
+
+
+def _moving_gain(T: Matrix, G: Matrix, rate: float, time: Time) -> Matrix:
+    """Return the gain that moves all modes of T, seen through G."""
     if time == "continuous":
-        rate = max(spectral_scale(F, time), float(np.linalg.norm(C, 2)))
-        shifted = T + SHIFT * rate * np.eye(len(T))
-        Y = solve_lyapunov(-shifted.T, 2 * G.T @ G, time)
-        return basis @ np.linalg.solve(Y, G.T)
+        Y = solve_lyapunov(-(T + SHIFT * rate * np.eye(len(T))).T, 2 * G.T @ G, time)
+        return np.linalg.solve(Y, G.T)
     S = np.linalg.inv(T / RADIUS)
     Y = solve_lyapunov(S.T, S.T @ G.T @ G @ S, time)
     YG = np.linalg.solve(Y, G.T)
-    return basis @ T @ YG @ np.linalg.inv(G @ YG + np.eye(len(C)))
+    return T @ YG @ np.linalg.inv(G @ YG + np.eye(len(G)))
 
 
 def _unstable_part(F: Matrix, time: Time) -> tuple[Matrix, Matrix]:

@@ -1,0 +1,202 @@
+"""Riccati equations: residuals in the plant's own letters, known answers, and what no change of coordinates alters."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from derive.numeric.boundary import unexcited_boundary
+from derive.numeric.extended import cholesky, divided, forward
+from derive.numeric.modes import distance_to_stability
+from derive.numeric.plant import Plant, example_plant, plant_from_mapping
+from derive.numeric.riccati import solve_riccati
+from tests.derive.numeric.plants import OSCILLATOR, STABILISING, STRONG, continuous, random_plant
+
+TIMES = ["continuous", "discrete"]
+
+
+def equation(plant, P):
+    """Return the left-hand side of the Riccati equation and the gain, written out as in the docstring."""
+    A, C, W, V, N = plant.A, plant.C, plant.W, plant.V, plant.N
+    if plant.is_continuous:
+        K = P @ C.T + N
+        return A @ P + P @ A.T + W - K @ np.linalg.solve(V, K.T), np.linalg.solve(V, K.T).T
+    K, S = A @ P @ C.T + N, C @ P @ C.T + V
+    return A @ P @ A.T - P + W - K @ np.linalg.solve(S, K.T), np.linalg.solve(S, K.T).T
+
+
+def assert_solves(plant, solution):
+    residual, gain = equation(plant, solution.P)
+    size = np.linalg.norm(plant.A) * np.linalg.norm(solution.P) + np.linalg.norm(plant.W)
+    assert np.linalg.norm(residual) <= 1e-13 * size
+    np.testing.assert_allclose(solution.gain, gain, rtol=1e-10, atol=1e-12 * np.abs(gain).max(initial=0))
+    np.testing.assert_array_equal(solution.P, solution.P.T)
+    modes = np.linalg.eigvals(plant.A - solution.gain @ plant.C)
+    np.testing.assert_allclose(np.poly(modes), np.poly(solution.closed_loop), rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize("time", TIMES)
+@pytest.mark.parametrize("n", range(1, 11))
+@pytest.mark.parametrize("cross", [False, True])
+def test_random_plants(time, n, cross):
+    plant = random_plant(time, n, seed=n, cross=cross)
+    solution = solve_riccati(plant)
+    assert (solution.status, len(solution.boundary_modes)) == ("stabilising", 0)
+    assert solution.residual < 1e-17
+    assert distance_to_stability(solution.closed_loop, time).max() < 0
+    assert_solves(plant, solution)
+
+
+@pytest.mark.parametrize(("plant", "P", "modes"), STRONG.values(), ids=STRONG)
+def test_strong_solutions(plant, P, modes):
+    solution = solve_riccati(plant)
+    assert solution.status == "strong"
+    np.testing.assert_allclose(solution.P, P, atol=1e-14)
+    np.testing.assert_allclose(solution.boundary_modes, modes, atol=1e-14)
+    np.testing.assert_allclose(solution.closed_loop[plant.n - len(modes) :], modes, atol=1e-14)
+    assert distance_to_stability(solution.closed_loop[: plant.n - len(modes)], plant.time).max(initial=-1) < 0
+    assert_solves(plant, solution)
+
+
+@pytest.mark.parametrize(("plant", "P"), STABILISING.values(), ids=STABILISING)
+def test_stabilising_solutions(plant, P):
+    solution = solve_riccati(plant)
+    assert solution.status == "stabilising"
+    np.testing.assert_allclose(solution.P, P, rtol=1e-15, atol=1e-300)
+    assert_solves(plant, solution)
+
+
+def test_the_cross_term_can_be_removed_by_hand():
+    plant = random_plant("discrete", 5, 2, seed=3)
+    removed = plant.N @ np.linalg.inv(plant.V)
+    data = {"A": plant.A - removed @ plant.C, "W": plant.W - removed @ plant.N.T, "N": np.zeros((5, 2))}
+    same = solve_riccati(replace(plant, **data))
+    solution = solve_riccati(plant)
+    np.testing.assert_allclose(solution.P, same.P, rtol=1e-12)
+    np.testing.assert_allclose(solution.gain, same.gain + removed, rtol=1e-11)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_units_change_nothing_but_units(time):
+    plant = random_plant(time, 6, 2, seed=7)
+    x, y = 10.0 ** np.arange(-9, 9, 3), np.array([1e-6, 1e6])
+    X, Y = np.diag(x), np.diag(y)
+    scaled = replace(plant, A=X @ plant.A @ np.diag(1 / x), C=Y @ plant.C @ np.diag(1 / x), W=X @ plant.W @ X,
+                     V=Y @ plant.V @ Y, N=X @ plant.N @ Y)  # fmt: skip
+    ours, theirs = solve_riccati(plant), solve_riccati(scaled)
+    np.testing.assert_allclose(theirs.P, X @ ours.P @ X, rtol=1e-11)
+    np.testing.assert_allclose(theirs.gain, X @ ours.gain @ np.diag(1 / y), rtol=1e-11)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_similar_plants_have_congruent_covariances(time):
+    plant = random_plant(time, 5, 2, seed=8)
+    T = np.random.default_rng(0).standard_normal((5, 5)) + 3 * np.eye(5)
+    inverse = np.linalg.inv(T)
+    W = T @ plant.W @ T.T
+    moved = replace(plant, A=T @ plant.A @ inverse, C=plant.C @ inverse, W=(W + W.T) / 2, N=T @ plant.N)
+    np.testing.assert_allclose(solve_riccati(moved).P, T @ solve_riccati(plant).P @ T.T, rtol=1e-10)
+
+
+def test_duality_with_the_regulator():
+    from scipy.linalg import solve_continuous_are, solve_discrete_are
+
+    for time, solve in (("continuous", solve_continuous_are), ("discrete", solve_discrete_are)):
+        plant = random_plant(time, 5, 2, seed=9)
+        cost = solve(plant.A.T, plant.C.T, plant.W, plant.V, s=plant.N)
+        np.testing.assert_allclose(solve_riccati(plant).P, cost, rtol=1e-9)
+
+
+def test_more_noise_means_more_error():
+    plant = random_plant("continuous", 4, 2, seed=2, cross=False)
+    P = solve_riccati(plant).P
+    for change in ({"W": plant.W + 0.1 * np.eye(4)}, {"V": 1.1 * plant.V}):
+        assert np.linalg.eigvalsh(solve_riccati(replace(plant, **change)).P - P)[0] > 0
+
+
+@pytest.mark.parametrize("order", [2, 3, 4, 5])
+@pytest.mark.parametrize("time", TIMES)
+def test_chains_of_integrators_in_any_coordinates(order, time):
+    T = np.linalg.qr(np.random.default_rng(order).standard_normal((order, order)))[0]
+    boundary = 0.0 if time == "continuous" else 1.0
+    A = np.diag(np.ones(order - 1), 1) + boundary * np.eye(order)
+    data = {"time": time, "A": T @ A @ T.T, "C": np.eye(1, order) @ T.T, "W": np.zeros((order, order)), "V": 1}
+    solution = solve_riccati(plant_from_mapping(data))
+    assert solution.status == "strong"
+    np.testing.assert_array_equal(solution.P, 0)
+    np.testing.assert_allclose(solution.boundary_modes, boundary, atol=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_boundary_modes_hide_in_a_mixture(seed):
+    """Two oscillators and an integrator drive, without noise of their own, excited and unstable modes."""
+    from scipy.linalg import block_diag
+
+    rng = np.random.default_rng(seed)
+    fast = 3 * np.array(OSCILLATOR)
+    A = block_diag(OSCILLATOR, fast, 0, [[-1, 2], [0, -0.5]], 0.5)
+    A[5:, :5] = rng.standard_normal((3, 5))
+    G = np.vstack([np.zeros((5, 2)), rng.standard_normal((3, 2))])
+    C, T = rng.standard_normal((2, 8)), rng.standard_normal((8, 8))
+    plain = solve_riccati(continuous(A=A, C=C, W=G @ G.T, V=np.eye(2)))
+    W, inverse = T @ G @ G.T @ T.T, np.linalg.inv(T)
+    mixed = solve_riccati(continuous(A=T @ A @ inverse, C=C @ inverse, W=(W + W.T) / 2, V=np.eye(2)))
+    assert (plain.status, mixed.status) == ("strong", "strong")
+    np.testing.assert_allclose(mixed.boundary_modes, [-3j, -1j, 0, 1j, 3j], atol=1e-11)
+    np.testing.assert_allclose(plain.P[:5], 0, atol=1e-14)
+    np.testing.assert_allclose(mixed.P, T @ plain.P @ T.T, rtol=0, atol=1e-11 * np.abs(mixed.P).max())
+
+
+def test_a_mode_near_the_boundary_is_not_on_it():
+    slow = solve_riccati(continuous(A=[[1e-6, 0], [0, -1]], C=[[1, 1]], W=np.diag([0, 1]), V=1))
+    assert slow.status == "stabilising"
+    assert slow.P[0, 0] > 1e-6
+    excited = solve_riccati(continuous(A=OSCILLATOR, C=[[1, 0]], W=np.diag([0, 1e-8]), V=1))
+    assert excited.status == "stabilising"
+    np.testing.assert_allclose(np.trace(excited.P), 2e-4, rtol=1e-4)
+
+
+def test_stable_modes_without_noise_are_no_boundary():
+    split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0)
+    assert (len(split.modes), split.kept.shape, split.removed.shape) == (0, (2, 2), (2, 0))
+
+
+def test_an_impossible_plant_fails_without_a_crash():
+    hidden = Plant(time="continuous", A=np.eye(1), C=np.zeros((1, 1)), W=np.eye(1), V=np.eye(1), N=np.zeros((1, 1)),
+                   M=np.eye(1))  # fmt: skip
+    assert solve_riccati(hidden).status == "failed"
+
+
+def test_the_example():
+    plant = example_plant()
+    solution = solve_riccati(plant)
+    assert (solution.status, solution.newton_steps > 0) == ("stabilising", True)
+    assert_solves(plant, solution)
+
+
+def test_extended_precision_helpers():
+    rng = np.random.default_rng(0)
+    G, X = rng.standard_normal((4, 4)), rng.standard_normal((3, 4))
+    V = (G @ G.T + np.eye(4)).astype(np.longdouble)
+    T = cholesky(V)
+    np.testing.assert_allclose(T @ T.T, V, rtol=1e-17, atol=1e-17)
+    np.testing.assert_allclose(T @ forward(T, X.T), X.T, rtol=1e-15)
+    np.testing.assert_allclose(divided(X.astype(np.longdouble), V) @ V, X, rtol=1e-15, atol=1e-16)
+
+
+@pytest.mark.skipif("DERIVE_BENCH" not in os.environ, reason="set DERIVE_BENCH to a folder of CAREX and DAREX archives")
+@pytest.mark.parametrize(("collection", "time"), [("carex", "continuous"), ("darex", "discrete")])
+def test_published_collections(collection, time):
+    loose = {"carex_2_4": 1e-12, "carex_2_8": 1e-7, "carex_4_1": 1e-10, "darex_2_5": 1e-11}
+    for path in sorted(Path(os.environ["DERIVE_BENCH"], collection).glob("*.npz")):
+        data = dict(np.load(path))
+        n, l = data["B"].shape  # noqa: E741
+        if not data.get("X_hp", np.zeros(0)).size or n > 120 or np.linalg.eigvalsh(data["R"])[0] < 1e-14:
+            continue
+        cross = data["S"] if data["S"].size else np.zeros((n, l))
+        plant = Plant(time=time, A=data["A"].T, C=data["B"].T, W=data["Q"], V=data["R"], N=cross, M=np.eye(n))
+        P = solve_riccati(plant).P
+        error = np.linalg.norm(P - data["X_hp"]) / (np.linalg.norm(data["X_hp"]) or 1.0)
+        assert error < loose.get(path.stem, 1e-14), path.stem
