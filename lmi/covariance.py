@@ -114,7 +114,7 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
 def covariance_error(plant: Plant, P: Matrix) -> Matrix | None:
     """Return what P (n, n) lacks to the optimal covariance, by Newton steps in the coordinates of P, or None."""
     common = balanced(plant)
-    scaling = recentred(common, common.scaled_covariance(P), 0.0)
+    scaling = recentred(plant, common, common.scaled_covariance(P), 0.0)
     error = newton_error(scaled_plant(plant, scaling), scaling.scaled_covariance(P))
     return None if error is None else scaling.covariance(error)
 
@@ -124,7 +124,7 @@ def _coordinates(plant: Plant, common: Scaling) -> Scaling:
     _, rough = _attempt(plant, optimal_covariance, ROUGHLY, common, common)
     if rough is None or rough.distance > ROUGH * rough.size:
         return common
-    return recentred(common, rough.P, rough.distance)
+    return recentred(plant, common, rough.P, rough.distance)
 
 
 def _attempt(

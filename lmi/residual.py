@@ -13,8 +13,11 @@ __all__ = ["gain_covariance", "newton_error", "optimal_gain", "riccati_residual"
 
 Matrix = NDArray[np.floating[Any]]
 
-SLOWEST = 0.9
-"""Largest ratio of successive Newton steps that is believed; rounding errors have a ratio near 1."""
+SLOWEST = 0.95
+"""Ratio of successive Newton steps from which on they are no longer taken to converge."""
+
+ROUNDING = 1e-10
+"""Relative size of a Newton step that may be rounding, so that the ratio to the next means nothing."""
 
 
 def symmetric_part(P: Any) -> Matrix:
@@ -54,7 +57,8 @@ def newton_error(plant: Plant, P: Matrix) -> Matrix | None:
     sum to (N(P) - P) / (1 - r). Near a stabilising solution r is almost 0; at a mode on the boundary 1/2 or more.
 
     Returns:
-        The matrix (n, n) that is missing to the solution, or None when a gain does not stabilise: P is no solution.
+        The matrix (n, n) that is missing to the solution, or None when P is no solution: a gain does not stabilise, or
+        the steps hardly shrink.
 
     Source: D. Kleinman, On an iterative technique for Riccati equation computations, IEEE Trans. Automatic Control
     13(1), 1968; G. Hewer, An iterative technique for the computation of the steady state gains for the discrete optimal
@@ -67,8 +71,10 @@ def newton_error(plant: Plant, P: Matrix) -> Matrix | None:
     if second is None:
         return None
     step = float(np.linalg.norm(first - P))
-    ratio = min(float(np.linalg.norm(second - first)) / step, SLOWEST) if step > 0 else 0.0
-    return (first - P) / (1 - ratio)
+    if step <= ROUNDING * np.linalg.norm(P):
+        return first - P
+    ratio = float(np.linalg.norm(second - first)) / step
+    return (first - P) / (1 - ratio) if ratio < SLOWEST else None
 
 
 def riccati_residual(plant: Plant, P: Matrix) -> float:

@@ -15,6 +15,7 @@ from lmi.programs.optimal_covariance import optimal_covariance
 from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
 from lmi.programs.program import Program
 from lmi.residual import riccati_residual
+from lmi.scaling import balanced, scaled_plant
 from lmi.solve import Status
 
 __all__ = ["ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_of", "output_rounding"]
@@ -154,13 +155,15 @@ def _hamiltonian(plant: Plant) -> Answer:
 def _eigenvalue_error(plant: Plant, modes: NDArray[Any]) -> float:
     """Estimate the error of a sum of modes that merge with their mirror images on the boundary of stability.
 
-    A perturbation of relative size eps moves a mode p at distance d from the boundary by about eps |p|max^2 / d.
+    A perturbation of relative size eps moves a mode at distance d from the boundary by about eps |H|^2 / d, where |H|
+    is the size of the Hamiltonian matrix or of the symplectic pencil.
     """
-    if len(modes) == 0:
-        return 0.0
-    scale = float(np.abs(modes).max()) if plant.is_continuous else 1.0
-    distances = np.maximum(-distance_to_stability(modes, plant.time), np.finfo(float).tiny)
-    return float(EIGENVALUE_SAFETY * np.finfo(float).eps * scale * np.sum(scale / distances))
+    scaling = balanced(plant)
+    scaled = scaled_plant(plant, scaling)
+    G = scaled.C.T @ np.linalg.solve(scaled.V, scaled.C)
+    size = max(1.0, float(np.linalg.norm(scaled.A)), float(np.sqrt(np.linalg.norm(scaled.W) * np.linalg.norm(G))))
+    distances = np.maximum(-distance_to_stability(modes, plant.time) / scaling.rate, np.finfo(float).tiny)
+    return float(EIGENVALUE_SAFETY * np.finfo(float).eps * scaling.rate * size * np.sum(size / distances))
 
 
 def _closed_form(plant: Plant) -> Answer:

@@ -24,7 +24,7 @@ class Scaling:
 
     Attributes:
         T: states (n, n), invertible.
-        R: outputs (l, l), lower triangular with R R' = V.
+        R: outputs (l, l), lower triangular, R R' = V, in discrete time V + C P C' for an approximate P.
         rate: [1/s], a power of two.
     """
 
@@ -48,22 +48,23 @@ class Scaling:
 
 
 def balanced(plant: Plant) -> Scaling:
-    """Balance the states, whiten the measurement noise, and measure time in units of the fastest rate.
+    """Balance the states, whiten the outputs, and measure time in units of the fastest rate.
 
-    T is a diagonal of powers of two that balances [[A, W], [C'V^-1C, -A']] under diag(T, T^-1), so that the answer does
-    not depend on the units of states, outputs and time. No Riccati equation is solved.
+    The outputs' noise becomes the identity, in discrete time that of the innovation for P = W. T is a diagonal of
+    powers of two that balances [[A, W], [C'C, -A']] under diag(T, T^-1), so that the answer does not depend on the
+    units of states, outputs and time. No Riccati equation is solved.
 
     Args:
         plant: with V > 0.
 
     Returns:
-        Coordinates in which V = I and the entries of A, W, C'C are of comparable size.
+        Coordinates in which the entries of A, W, C'C are of comparable size.
 
     Source: P. Benner, Symplectic balancing of Hamiltonian matrices, SIAM J. Sci. Comput. 22(5), 2001 (the idea).
     """
     from scipy.linalg import matrix_balance
 
-    R = np.linalg.cholesky(plant.V)
+    R = _output_root(plant, plant.W)
     C = np.linalg.solve(R, plant.C)
     hamiltonian = np.block([[plant.A, plant.W], [C.T @ C, -plant.A.T]])
     np.fill_diagonal(hamiltonian, 0.0)
@@ -74,10 +75,11 @@ def balanced(plant: Plant) -> Scaling:
     return replace(scaling, rate=_rate(scaled_plant(plant, scaling)))
 
 
-def recentred(scaling: Scaling, P_z: Matrix, uncertainty: float) -> Scaling:
+def recentred(plant: Plant, scaling: Scaling, P_z: Matrix, uncertainty: float) -> Scaling:
     """Return coordinates in which a covariance known so far becomes the identity.
 
     Args:
+        plant: the plant.
         scaling: the coordinates of P_z.
         P_z: an approximate covariance (n, n).
         uncertainty: its error; directions in which P_z is smaller are not magnified.
@@ -86,26 +88,33 @@ def recentred(scaling: Scaling, P_z: Matrix, uncertainty: float) -> Scaling:
     floor = max(FLOOR_RTOL * sizes[-1], uncertainty)
     if not floor > 0:
         return scaling
-    return replace(scaling, T=scaling.T @ directions * np.sqrt(np.maximum(sizes, floor)))
+    T = scaling.T @ directions * np.sqrt(np.maximum(sizes, floor))
+    return replace(scaling, T=T, R=_output_root(plant, T @ T.T))
 
 
 def scaled_plant(plant: Plant, scaling: Scaling) -> Plant:
-    """Return the plant in the coordinates z, q, s, with V = I and weight M = I.
+    """Return the plant in the coordinates z, q, s, with weight M = I.
 
     The covariance sought is the greatest (smallest) one in the order of symmetric matrices, so that every positive
     definite weight has the same answer; the identity of well-chosen coordinates is the best conditioned.
     """
     T, R, rate = scaling.T, scaling.R, scaling.rate
     W = np.linalg.solve(T, np.linalg.solve(T, plant.W).T) / rate
+    V = np.linalg.solve(R, np.linalg.solve(R, plant.V).T)
     return replace(
         plant,
         A=np.linalg.solve(T, plant.A @ T) / rate,
         C=np.linalg.solve(R, plant.C @ T) / np.sqrt(rate),
         W=(W + W.T) / 2,
-        V=np.eye(plant.l),
+        V=(V + V.T) / 2,
         N=np.linalg.solve(T, np.linalg.solve(R, plant.N.T).T) / np.sqrt(rate),
         M=np.eye(plant.n),
     )
+
+
+def _output_root(plant: Plant, P: Matrix) -> Matrix:
+    """Return the Cholesky factor of V, in discrete time of V + C P C'."""
+    return np.linalg.cholesky(plant.V if plant.is_continuous else plant.V + plant.C @ P @ plant.C.T)
 
 
 def _rate(plant: Plant) -> float:

@@ -90,7 +90,7 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT) -> O
         try:
             problem.solve(solver=cp.CLARABEL, **options)
         except cp.SolverError as error:
-            return Outcome(Status.FAILED, str(error).splitlines()[0])
+            return Outcome(Status.FAILED, str(error).split(".")[0])
     return _judged(problem)
 
 

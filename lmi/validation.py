@@ -273,7 +273,8 @@ def _judged(
         modes = ", ".join(dict.fromkeys(format_mode(mode) for mode in boundary_modes))
         return f"not applicable: boundary mode {modes}, reached only in the limit"
     if not np.isfinite(residual):
-        return f"inaccurate: its numbers solve nothing ({answer.status})"
+        doubted = answer.status.startswith("inaccurate")
+        return answer.status if doubted else "inaccurate: Newton steps do not confirm its covariance"
     return f"inaccurate: its own numbers admit a relative error of {residual:.1e}"
 
 

@@ -159,13 +159,14 @@ def test_scaled_coordinates_are_the_same_problem(time, random_plant):
     plant = random_plant(time, 4)
     scaling = balanced(plant)
     assert np.all(np.log2(np.diag(scaling.T)) % 1 == 0)
-    for coordinates in (scaling, recentred(scaling, np.diag([4.0, 1.0, 1e-3, 1e-20]), 1e-6)):
+    for coordinates in (scaling, recentred(plant, scaling, np.diag([4.0, 1.0, 1e-3, 1e-20]), 1e-6)):
         scaled = scaled_plant(plant, coordinates)
         solution = solve_riccati(scaled)
         P = coordinates.covariance(solution.P)
         assert riccati_residual(plant, P) < 1e-9
         np.testing.assert_allclose(coordinates.gain(solution.gain), optimal_gain(plant, P), rtol=1e-7, atol=1e-9)
-        np.testing.assert_array_equal(scaled.V, np.eye(plant.l))
+        innovation = scaled.V if time == "continuous" else scaled.V + scaled.C @ scaled.C.T
+        assert np.linalg.cond(innovation) < 1e3
 
 
 def test_factor_has_the_rank_of_the_covariance():

@@ -73,7 +73,7 @@ def test_solver_that_gives_up_is_a_status_not_an_exception(monkeypatch):
     monkeypatch.setattr(cp.Problem, "solve", solve)
     solution = solve_covariance(example_plant(), h2)
     assert solution.outcome.status is Status.FAILED
-    assert solution.outcome.raw_status == "Solver 'CLARABEL' failed."
+    assert solution.outcome.raw_status == "Solver 'CLARABEL' failed"
     assert solution.P is None
     assert solution.attempts == 3
 

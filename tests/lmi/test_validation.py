@@ -14,7 +14,7 @@ from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi.report import verdict_line
-from lmi.routes import ROUTES, Answer, cost_of
+from lmi.routes import ROUTES, Answer, cost_of, output_rounding
 from lmi.validation import AGREEMENT, Verdict, validate
 
 TIMES = ("continuous", "discrete")
@@ -97,6 +97,28 @@ def test_chain_of_integrators_at_the_boundary_is_no_disagreement():
     validation = validate({"time": "continuous", "A": A, "C": [[1, 0, 0, 0]], "W": np.zeros((4, 4)), "V": 1.0})
     assert validation.routes[0].status == "strong"
     assert validation.verdict is Verdict.AGREE
+
+
+def test_sharp_sensors_are_confirmed_and_an_ill_conditioned_pencil_is_called_inaccurate():
+    plant = {"time": "discrete", "A": [[0.5, 1], [0, 0.3]], "C": [[1, 1]], "W": 1e10 * np.eye(2), "V": 1e-10}
+    validation = validate(plant)
+    assert validation.verdict is Verdict.AGREE
+    assert all(validation.route(name).agrees for name in ("lmi-primal", "lmi-dual", "lmi-h2", "nlp", "integral"))
+    assert validation.route("hamiltonian").status.startswith("inaccurate")
+
+
+def test_cancellation_in_the_output_of_a_large_covariance_is_neither(monkeypatch):
+    P = 1e12 * np.ones((2, 2)) + np.eye(2)
+    plant = replace(example_plant(), A=-np.eye(2), C=np.array([[1.0, -1.0]]), W=np.eye(2), V=np.eye(1))
+    plant = replace(plant, N=np.zeros((2, 1)), M=np.eye(2))
+    rounded = output_rounding(plant, P)
+    assert 1e-4 < rounded < 1e-2
+    riccati = replace(ROUTES[0], run=lambda plant: Answer("stabilising", P, np.zeros((2, 1)), 2.0, error=0.0))
+    integral = replace(ROUTES[5], run=lambda plant: Answer("solved", output=2.0 + rounded, error=0.0))
+    monkeypatch.setattr(validation_module, "ROUTES", (riccati, integral))
+    validation = validate(plant)
+    assert not validation.route("integral").agrees
+    assert not validation.route("integral").disagrees
 
 
 def garbage(plant):
