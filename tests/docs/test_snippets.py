@@ -18,7 +18,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"^```(?P<kind>[^\n]*)\n(?P<body>.*?)^```$", re.MULTILINE | re.DOTALL)
 BY_CI = re.compile(r"python3 -m pip install|python3 -m venv|python3 -m pytest|ruff|sphinx-build|PIP_CONSTRAINT")
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
-KINDS = {"console", "pycon", "toml", "json", "text", "sh"}
+KINDS = {"console", "pycon", "sh", "{toctree}"}
 
 
 def blocks(page):
