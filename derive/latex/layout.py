@@ -106,14 +106,6 @@ class Fenced:
     left: str = "("
     right: str = ")"
 
-    @property
-    def tall(self) -> bool:
-        """Whether the body is higher than a line of text."""
-        return any(
-            isinstance(b, Table) or (isinstance(b, Over) and not b.small) or b == Op(INTEGRAL, "prefix")
-            for b in inside(self.body)
-        )
-
 
 @dataclass(frozen=True)
 class Table:
@@ -149,6 +141,14 @@ def inside(box: Box) -> Iterator[Box]:
     yield box
     for part in parts(box):
         yield from inside(part)
+
+
+def tall(box: Box) -> bool:
+    """Return whether a box is higher than a line of text."""
+    return any(
+        isinstance(b, Table) or (isinstance(b, Over) and not b.small) or b == Op(INTEGRAL, "prefix")
+        for b in inside(box)
+    )
 
 
 def row(items: Iterable[Box]) -> Box:
@@ -282,7 +282,7 @@ def _symbol(symbol: Symbol, *accents: str) -> Box:
     glyph = symbol.glyph if symbol.glyph.letter else Glyph(symbol.name)
     text = glyph.letter.lstrip("\\")
     text = GREEK.get(text, text)
-    box: Box = Letter(text, glyph.upright or len(text) > 1)
+    box: Box = Digits(text) if text[0].isdigit() else Letter(text, glyph.upright or len(text) > 1)
     for accent in (glyph.accent, *accents):
         box = Accented(box, accent) if accent else box
     if glyph.sub or glyph.sup:

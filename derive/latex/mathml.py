@@ -5,7 +5,22 @@ from __future__ import annotations
 from html import escape
 
 from derive.latex.alphabet import ACCENTS, SIGNS
-from derive.latex.layout import THIN, TOP, Accented, Box, Digits, Fenced, Letter, Op, Over, Row, Scripted, Table, layout
+from derive.latex.layout import (
+    THIN,
+    TOP,
+    Accented,
+    Box,
+    Digits,
+    Fenced,
+    Letter,
+    Op,
+    Over,
+    Row,
+    Scripted,
+    Table,
+    layout,
+    tall,
+)
 from derive.terms import Equation, Term
 
 SPACE = '<mspace width=".17em"/>'
@@ -36,16 +51,15 @@ def markup(box: Box) -> str:
             return f"<mrow>{_many(box)}</mrow>"
         case Scripted(base, sub, sup):
             tag = "msub" if sup is None else "msup" if sub is None else "msubsup"
-            return f"<{tag}>{''.join(markup(b) for b in (base, sub, sup) if b is not None)}</{tag}>"
+            return f"<{tag}>{_base(base)}{''.join(markup(b) for b in (sub, sup) if b is not None)}</{tag}>"
         case Accented(base, accent):
             mark = f'<mo stretchy="false">{ACCENTS[accent][1]}</mo>'
             return f'<mover accent="true">{markup(base)}{mark}</mover>'
         case Over(top, bottom, small):
             style = ' displaystyle="false"' if small else ""
             return f"<mfrac{style}>{markup(top)}{markup(bottom)}</mfrac>"
-        case Fenced(body, left, right):
-            fixed = "" if box.tall else ' stretchy="false"'
-            return f"<mrow><mo{fixed}>{left}</mo>{_many(body)}<mo{fixed}>{right}</mo></mrow>"
+        case Fenced():
+            return f"<mrow>{_fenced(box)}</mrow>"
         case Table(rows):
             cells = ("".join(f"<mtd>{_many(c)}</mtd>" for c in r) for r in rows)
             return f"<mrow><mo>[</mo><mtable>{''.join(f'<mtr>{c}</mtr>' for c in cells)}</mtable><mo>]</mo></mrow>"
@@ -54,6 +68,18 @@ def markup(box: Box) -> str:
 def _many(box: Box) -> str:
     """Print a box where any number of elements may stand."""
     return "".join(map(markup, box.items)) if isinstance(box, Row) else markup(box)
+
+
+def _fenced(box: Fenced) -> str:
+    fixed = "" if tall(box) else ' stretchy="false"'
+    return f"<mo{fixed}>{box.left}</mo>{_many(box.body)}<mo{fixed}>{box.right}</mo>"
+
+
+def _base(box: Box) -> str:
+    """Print what carries a script; a bracket counts as no higher than a capital, so that the script stays low."""
+    if not isinstance(box, (Fenced, Row)) or tall(box):
+        return markup(box)
+    return f'<mpadded height=".7em">{_fenced(box) if isinstance(box, Fenced) else _many(box)}</mpadded>'
 
 
 def _letter(text: str, upright: bool) -> str:
@@ -71,4 +97,4 @@ def _operator(text: str, form: str) -> str:
         return f"<mo>{sign}</mo>"
     if form == "prefix":
         return f'<mo form="prefix">{sign}</mo>'
-    return f'<mo lspace="0" rspace="0">{sign}</mo>' if text in SIGNS or text == "," else f"<mo>{sign}</mo>"
+    return f'<mo lspace="0" rspace="0">{sign}</mo>' if text in SIGNS else f"<mo>{sign}</mo>"

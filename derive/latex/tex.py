@@ -21,6 +21,7 @@ from derive.latex.layout import (
     Scripted,
     Table,
     layout,
+    tall,
 )
 from derive.terms import Equation, Term
 
@@ -56,7 +57,7 @@ def tex(box: Box) -> str:
         case Over(top, bottom, small):
             return _fraction(tex(top), tex(bottom), small)
         case Fenced(body, left, right):
-            return rf"\left{left}{tex(body)}\right{right}" if box.tall else f"{left}{tex(body)}{right}"
+            return rf"\left{left}{tex(body)}\right{right}" if tall(box) else f"{left}{tex(body)}{right}"
         case Table(rows):
             lines = r" \\ ".join(" & ".join(map(tex, r)) for r in rows)
             return rf"\begin{{bmatrix}} {lines} \end{{bmatrix}}"
