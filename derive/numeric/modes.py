@@ -68,6 +68,6 @@ def _balanced_pair(A: Matrix, C: Matrix) -> tuple[Matrix, Matrix]:
 
     balanced, (scaling, _) = matrix_balance(A, permute=False, separate=True)
     C = C * scaling
-    sizes = np.linalg.norm(C, axis=1, keepdims=True)
+    sizes = np.abs(C).max(axis=1, keepdims=True)
     size = np.linalg.norm(balanced, 2) or 1.0
     return balanced, size * np.divide(C, sizes, out=np.zeros_like(C), where=sizes > 0)

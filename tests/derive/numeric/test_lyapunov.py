@@ -93,3 +93,8 @@ def test_what_is_stable_already_is_left_alone():
 )
 def test_a_mode_reads_like_a_number(mode, text):
     assert format_mode(mode) == text
+
+
+def test_no_gain_stabilises_what_is_not_seen():
+    for A, time in (([[1.0]], "continuous"), ([[2.0]], "discrete")):
+        assert np.isnan(stabilising_gain(np.array(A), np.zeros((1, 1)), time)).all()
