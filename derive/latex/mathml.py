@@ -79,7 +79,7 @@ def _base(box: Box) -> str:
     """Print what carries a script; a bracket counts as no higher than a capital, so that the script stays low."""
     if not isinstance(box, (Fenced, Row)) or tall(box):
         return markup(box)
-    return f'<mpadded height=".7em">{_fenced(box) if isinstance(box, Fenced) else _many(box)}</mpadded>'
+    return f'<mpadded height=".62em">{_fenced(box) if isinstance(box, Fenced) else _many(box)}</mpadded>'
 
 
 def _letter(text: str, upright: bool) -> str:

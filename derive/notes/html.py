@@ -16,12 +16,16 @@ from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline
 from derive.terms import Equation, Sum, Term
 
 LONG = 36  # characters of a left side that leaves no room for the right side beside it
+PUNCTUATED = re.compile(
+    r"(\(?(?:<a [^>]*>)?<math>(?:(?!</math>).)*</math>(?:</a>)?[,.;:)]+)"
+)  # no break before a comma
 SYMBOLS = {"proved": "✓", "definition": "≔", "hypothesis": "∗", "refuted": "✗", "incomplete": "!", "not proved": "?"}
 LEGEND = {
     "proved": "a certificate was found and replayed by the kernel",
     "definition": "says what a symbol means",
     "hypothesis": "assumed by the theory",
     "refuted": "an exact counterexample is shown",
+    "not proved": "the kernel did not accept the certificate",
     "incomplete": "true under more than the source says, or left open there",
 }
 
@@ -104,7 +108,9 @@ def _row(row: Row) -> str:
     lhs = mathml(row.lhs) if row.lhs is not None else ""
     rhs = "".join(math(a).replace("<math><mo>", '<math><mo form="infix">', 1) for a in _addends(row))
     number = f'<a class="n" href="#{row.id}">({escape(row.number)})</a>' if row.number else '<span class="n"></span>'
-    uses = f' <span class="uses">from {_inline(row.uses)}</span>' if row.uses else ""
+    rests = [row.rule] * bool(row.rule) + [f"from {_inline(row.uses)}"] * bool(row.uses)
+    uses = f' <span class="uses">{", ".join(rests)}</span>' if rests else ""
+    uses += f" <b>{escape(row.message)}</b>" if row.message else ""
     reason = f"<span>{_inline(row.reason)}</span>" if row.reason else ""
     place = "aside" if row.badge in ("definition", "hypothesis") else "why"
     why = f'<div class="{place}">{_badge(row.badge)} {reason}{uses}</div>' if row.badge else ""
@@ -162,4 +168,4 @@ def _inline(text: Inline) -> str:
                 out.append(_link(part))
             case Term() | Equation():
                 out.append(mathml(part))
-    return "".join(out)
+    return PUNCTUATED.sub(r'<span class="nb">\1</span>', "".join(out))

@@ -58,7 +58,9 @@ def _display(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         if row.badge:
             number = f"({row.number}) " if row.number else ""
-            uses = f" · from {_inline(row.uses)}" if row.uses else ""
+            rests = [row.rule] * bool(row.rule) + [f"from {_inline(row.uses)}"] * bool(row.uses)
+            uses = f" · {', '.join(rests)}" if rests else ""
+            uses += f" **{_text(row.message)}**" if row.message else ""
             out.append(f"- {number}{SYMBOLS[row.badge]} *{row.badge}* {_inline(row.reason)}{uses}".rstrip())
     return out
 

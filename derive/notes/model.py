@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse
-from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Step
+from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Rule, Step
 from derive.terms import Dot, Equation, Expect, Inverse, Symbol, Term
 
 __all__ = [
@@ -35,7 +35,22 @@ __all__ = [
 ]
 
 Badge = Literal["proved", "definition", "hypothesis", "refuted", "incomplete", "not proved", ""]
-FINDINGS = {"false": "refuted", "incomplete": "incomplete", "assumption": "incomplete", "silent": "incomplete"}
+FINDINGS: dict[str, Badge] = {
+    "false": "refuted",
+    "incomplete": "incomplete",
+    "assumption": "incomplete",
+    "silent": "incomplete",
+}
+RULES: dict[Rule, str] = {
+    "identity": "identity",
+    "apply": "on both sides",
+    "trace": "under the trace",
+    "gradient": "gradient",
+    "positivity": "sum of squares",
+    "comparison": "comparison",
+    "uniqueness": "uniqueness",
+    "chain": "chain",
+}
 SOURCES = {
     "000": "Lecture notes, Kalman filter as an observer (equations 31.x)",
     "001": "Fang, Ishii, Chen, Johansson, arXiv:1807.08604 (2018)",
@@ -57,7 +72,10 @@ Inline = tuple["str | Term | Equation | Link", ...]
 
 @dataclass(frozen=True)
 class Row:
-    """One displayed line: [lhs] relation rhs, its number, the reason under it and what that reason rests on."""
+    """One displayed line: [lhs] relation rhs, its number, the reason under it, the rule and what it rests on.
+
+    ``message`` is what the kernel said of a step that it did not accept.
+    """
 
     lhs: Term | None
     relation: str
@@ -68,6 +86,7 @@ class Row:
     reason: Inline = ()
     rule: str = ""
     uses: Inline = ()
+    message: str = ""
 
 
 @dataclass(frozen=True)
@@ -155,23 +174,28 @@ def visible(number: str) -> str:
 
 def document_of(lecture: Lecture, outcomes: Sequence[Outcome]) -> Document:
     """Lay out a lecture; every badge of a derived row comes from the outcome of its replay."""
-    accepted = {o.step: o.accepted for o in outcomes}
+    verdicts = {o.step: o for o in outcomes}
     anchors, numbers = _anchors(lecture)
-    layout = _Layout(lecture, accepted, anchors, numbers)
+    layout = _Layout(lecture, verdicts, anchors, numbers)
     blocks: list[Block] = [Section(lecture.title, 1, slug(lecture.key))]
     for item in lecture.items:
         blocks += layout.block(item)
     sources = "; ".join(SOURCES[s] for s in lecture.sources if s in SOURCES)
-    proved = sum(accepted.get(s.name, False) for s in lecture.steps)
+    proved = sum(layout.accepted(s) for s in lecture.steps)
     return Document(lecture.title, (sources,), tuple(blocks), proved, len(lecture.steps))
 
 
 def join(title: str, subtitle: Inline, documents: Sequence[Document], extra: Sequence[Block] = ()) -> Document:
-    """Bind several documents into one page, with further blocks at its end."""
-    blocks = tuple(b for d in documents for b in d.blocks)
+    """Bind several documents into one page, each with its sources, and further blocks at its end."""
+    blocks = tuple(b for d in documents for b in _with_sources(d))
     return Document(
         title, subtitle, (*blocks, *extra), sum(d.proved for d in documents), sum(d.total for d in documents)
     )
+
+
+def _with_sources(document: Document) -> tuple[Block, ...]:
+    named = (Para(("Source: ", *document.subtitle)),) if any(document.subtitle) else ()
+    return (*document.blocks[:1], *named, *document.blocks[1:])
 
 
 def _anchors(lecture: Lecture) -> tuple[dict[str, str], dict[str, str]]:
@@ -193,9 +217,15 @@ def _anchors(lecture: Lecture) -> tuple[dict[str, str], dict[str, str]]:
 @dataclass(frozen=True)
 class _Layout:
     lecture: Lecture
-    accepted: Mapping[str, bool]
+    verdicts: Mapping[str, Outcome]
     anchors: Mapping[str, str]
     numbers: Mapping[str, str]
+
+    def verdict(self, name: str) -> Outcome:
+        return self.verdicts.get(name, Outcome(name, False, "not replayed"))
+
+    def accepted(self, step: Step) -> bool:
+        return self.verdict(step.name).accepted
 
     def block(self, item: Item) -> list[Block]:
         match item:
@@ -233,7 +263,7 @@ class _Layout:
         for i, step in enumerate(shown):
             continues = i > 0 and shown[i - 1].statement.rhs == step.statement.lhs
             last = closing if closing and i == len(shown) - 1 else None
-            proved = self.accepted.get(step.name, False) and (last is None or self.accepted.get(last.name, False))
+            rejected = [v for s in (step, last) if s and not (v := self.verdict(s.name)).accepted]
             rows.append(
                 Row(
                     None if continues else step.statement.lhs,
@@ -241,10 +271,11 @@ class _Layout:
                     step.statement.rhs,
                     slug(self.lecture.key, step.name),
                     visible((last.number if last else "") or step.number),
-                    "proved" if proved else "not proved",
+                    "not proved" if rejected else "proved",
                     step.reason,
-                    step.rule,
+                    RULES[step.rule],
                     self.uses(step.uses),
+                    rejected[0].message if rejected else "",
                 )
             )
         return rows
@@ -285,14 +316,14 @@ class _Layout:
         key = self.lecture.key
         printed: Inline = (item.printed,) if isinstance(item.printed, Equation) else item.printed
         proof = Link("proved here", self.anchors[item.proved_by]) if item.proved_by else None
-        if item.proved_by and not self.accepted.get(item.proved_by, False):
+        if item.proved_by and not self.verdict(item.proved_by).accepted:
             proof = None
         return Note(
             slug(key, "finding", item.source, item.number or "text", item.finding),
             item.source,
             visible(item.number),
             item.finding,
-            FINDINGS[item.finding],  # type: ignore[arg-type]
+            FINDINGS[item.finding] if item.evidence else "incomplete",
             printed,
             item.text,
             tuple(_evidence(e) for e in item.evidence),
