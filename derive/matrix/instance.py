@@ -28,7 +28,7 @@ def unknowns(poly: Poly) -> set[str]:
 
 @dataclass
 class Instance:
-    """Values of letters and central scalars at given sizes."""
+    """Values of letters and central scalars at given sizes; different times are apart, where a Dirac delta is 0."""
 
     alphabet: Alphabet
     sizes: Mapping[str, int]
@@ -99,7 +99,7 @@ class Instance:
 
         value = fmpq(c.numerator, c.denominator)
         for s in m:
-            value *= self.scalars[s]
+            value *= 0 if s.startswith("δ") else self.scalars[s]
         return value
 
 

@@ -1,172 +1,184 @@
 """What to choose and what to compute when an instance of some hypotheses is built.
 
-Inverse letters are computed from what they invert. Every other relation is solved for a letter that occurs linearly in
-it: a lone one if there is one (X in X = f, the noise in a Riccati equation), else one that no other letter of the
-relation depends on. All other letters are free.
+Inverse letters are computed from what they invert. A relation with a lone letter (X in X = f, the noise in a Riccati
+equation) is solved for it. Any other relation is first tried at a random instance: if it holds there, it follows from
+the rest; else it is solved for a letter that occurs linearly. The letters declared last are solved for first, and no
+letter may depend on itself. All other letters are free. What is chosen here decides how fast an instance is found, not
+whether it is one: every hypothesis is tested in the end.
 """
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from itertools import chain
 
-from derive.kernel import ANY, Poly, parts
+from derive.kernel import Poly, parts
+from derive.matrix.bearing import Bearing, bearing, lone
 from derive.matrix.hypotheses import Hypotheses
-from derive.matrix.instance import Instance, base, stack, unknowns
+from derive.matrix.instance import Instance, base, unknowns
+from derive.matrix.solve import Rule
 from derive.rules import Fact
 
-__all__ = ["Plan", "Rule", "make_plan"]
+__all__ = ["Plan", "make_plan"]
 
-
-@dataclass(frozen=True)
-class Rule:
-    """How one letter or scalar follows from others: by inverting ``poly``, or by solving poly = 0 for it."""
-
-    target: str
-    kind: str  # 'inverse', 'matrix' or 'scalar'
-    poly: Poly
-
-    def apply(self, instance: Instance) -> bool:
-        """Set the target's value; False if there is none."""
-        if self.kind == "inverse":
-            return _invert(self, instance)
-        return (_solve if self.kind == "matrix" else _solve_scalar)(self, instance)
+PROBES = 3  # random instances that are tried for one that exists
+PROBE_SIZE = 2
 
 
 @dataclass(frozen=True)
 class Plan:
-    """Free letters and scalars in order, the rules for the others, and what is left to be tested."""
+    """Free letters and scalars in order, the rules for the others, and what is tested in the end.
+
+    ``twins`` names for a free letter that the claim does not mention the letter whose value it tries first (P for P_1);
+    ``shown`` are the letters that the claim depends on.
+    """
 
     free: tuple[str, ...]
     free_scalars: tuple[str, ...]
     rules: tuple[Rule, ...]
     relations: Mapping[str, Poly]
+    central: Mapping[str, Poly]
     facts: Mapping[str, Fact]
+    twins: Mapping[str, str]
+    shown: frozenset[str]
 
 
 def make_plan(problem: Hypotheses, claim: Iterable[Poly]) -> Plan | None:
-    """Return how to build instances of the hypotheses that bear on a claim; None if one cannot be evaluated.
-
-    A relation that merely defines a letter which occurs nowhere else is left out, as is what shares no letter with
-    the claim, directly or through other hypotheses.
-    """
-    wanted = set[str]().union(*map(unknowns, claim))
-    relations, inverses = _peel(problem, wanted)
-    relations, facts, inverses, letters = _connected(problem, wanted, relations, inverses)
-    polys = [*claim, *relations.values(), *inverses.values(), *(p for f in facts.values() for p in _polys(f))]
-    scalars = {s for p in polys for m, _ in p.terms for s in m}
-    central = {n: p for n, p in problem.relations.items() if p.rows == ANY}
-    scalars |= {s for p in central.values() for m, _ in p.terms for s in m}
-    if any(s[0] in "∫δ" for s in scalars):
+    """Return how to build instances of the hypotheses that bear on a claim; None if an integral is among them."""
+    polys = list(claim)
+    wanted = set[str]().union(*map(unknowns, polys))
+    bears = bearing(problem, wanted)
+    scalars = bears.scalars() | {s for p in polys for m, _ in p.terms for s in m}
+    if any(s[0] == "∫" for s in scalars) or any(s[0] == "δ" for p in polys for m, _ in p.terms for s in m):
         return None
-    rules = [Rule(name, "inverse", poly) for name, poly in inverses.items()]
-    rules += _solved(relations, rules)
-    rules += _solved_scalars(central)
+    scalars = {s for s in scalars if s[0] != "δ"}
+    rules = Chooser(problem, bears, scalars).choose()
     targets = {rule.target for rule in rules}
     order = {name: i for i, name in enumerate(problem.alphabet.letters)}
-    free = sorted(letters - targets, key=lambda a: (order.get(parts(a)[0], 0), a))
-    return Plan(tuple(free), tuple(sorted(scalars - targets)), _sorted(rules), {**relations, **central}, facts)
-
-
-def _polys(fact: Fact) -> list[Poly]:
-    return [p for row in fact.matrix for p in row]
-
-
-def _peel(problem: Hypotheses, wanted: set[str]) -> tuple[dict[str, Poly], dict[str, Poly]]:
-    """Leave out relations and inverses that only define a letter which occurs nowhere else."""
-    inverses = dict(problem.inverses)
-    implied = {f for name, poly in inverses.items() for f in _inverse_relations(problem, name, poly)}
-    relations = {n: p for n, p in problem.relations.items() if p not in implied and p.rows != ANY}
-    fixed = wanted | {a for f in problem.facts.values() for p in _polys(f) for a in unknowns(p)}
-    while True:
-        counts: dict[str, int] = {}
-        for a in chain(*map(unknowns, chain(relations.values(), inverses.values()))):
-            counts[a] = counts.get(a, 0) + 1
-        gone = [n for n in inverses if n not in fixed and n not in counts]
-        for n in gone:
-            del inverses[n]
-        done = next((n for n, p in relations.items() if _defines_unused(p, counts, fixed, problem)), None)
-        if done is not None:
-            del relations[done]
-        elif not gone:
-            return relations, inverses
-
-
-def _inverse_relations(problem: Hypotheses, name: str, poly: Poly) -> list[Poly]:
-    """Return both relations of an inverse, as they are declared and transposed."""
-    letter = Poly({((), (name,)): 1}, poly.cols, poly.rows)
-    one = Poly({((), ()): 1}, poly.rows, poly.rows)
-    both = [poly * letter - one, letter * poly - one]
-    return both + [problem.alphabet.transpose(p) for p in both]
-
-
-def _defines_unused(poly: Poly, counts: Mapping[str, int], fixed: set[str], problem: Hypotheses) -> bool:
-    turned = problem.alphabet.transpose(poly)
-    for letter in _lone(poly):
-        symmetric = problem.alphabet.letters[parts(letter)[0]].symmetric
-        free = letter not in fixed and letter not in problem.inverses and counts[letter] == 1
-        if free and (not symmetric or turned in (poly, -poly)):
-            return True
-    return False
-
-
-def _lone(poly: Poly) -> list[str]:
-    """Return the letters that occur once, as a term of their own without scalars."""
-    occurrences = [base(a) for _, w in poly.terms for a in w]
-    return [base(w[0]) for m, w in poly.terms if len(w) == 1 and not m and occurrences.count(base(w[0])) == 1]
-
-
-def _connected(
-    problem: Hypotheses, wanted: set[str], relations: Mapping[str, Poly], inverses: Mapping[str, Poly]
-) -> tuple[dict[str, Poly], dict[str, Fact], dict[str, Poly], set[str]]:
-    """Return the hypotheses that share letters with the claim, directly or through others, and all their letters."""
-    facts = {n: f for n, f in problem.facts.items() if f.kind != "initial"}
-    groups: list[set[str]] = [unknowns(p) for p in relations.values()]
-    groups += [set[str]().union(*map(unknowns, _polys(f))) for f in facts.values()]
-    groups += [unknowns(p) | {name} for name, p in inverses.items()]
-    letters, size = set(wanted), -1
-    while size != len(letters):
-        size = len(letters)
-        for group in groups:
-            if group & letters:
-                letters |= group
-    return (
-        {n: p for n, p in relations.items() if unknowns(p) & letters},
-        {n: f for n, f in facts.items() if any(unknowns(p) & letters for p in _polys(f))},
-        {n: p for n, p in inverses.items() if n in letters},
-        letters,
+    free = sorted(bears.letters - targets, key=lambda a: (order.get(parts(a)[0], 0), a))
+    return Plan(
+        tuple(free),
+        tuple(sorted(scalars - targets)),
+        ordered(rules),
+        bears.relations,
+        bears.central,
+        bears.facts,
+        _twins(free, wanted, problem),
+        frozenset(depends(wanted, rules)),
     )
 
 
-def _solved(relations: Mapping[str, Poly], inverses: list[Rule]) -> list[Rule]:
-    """Choose for each relation a letter to solve for, such that no letter depends on itself."""
-    rules, solved = list(inverses), list[Rule]()
-    for poly in relations.values():
+def _twins(free: list[str], wanted: set[str], problem: Hypotheses) -> dict[str, str]:
+    """Pair free letters outside the claim with an earlier one of the same type and the same first character."""
+    types = {a: problem.alphabet.letters[parts(a)[0]] for a in free}
+    twins: dict[str, str] = {}
+    for i, a in enumerate(free):
+        like = (b for b in free[:i] if b[0] == a[0] and _type(types[b]) == _type(types[a]))
+        twin = next(like, None) if a not in wanted else None
+        if twin is not None:
+            twins[a] = twin
+    return twins
+
+
+def _type(letter) -> tuple[str, str, bool]:
+    return letter.rows, letter.cols, letter.symmetric
+
+
+@dataclass
+class Chooser:
+    """Choose what each relation is solved for."""
+
+    problem: Hypotheses
+    bears: Bearing
+    scalars: set[str]
+
+    def choose(self) -> list[Rule]:
+        """Return the rules: definitions first, then what does not follow from them; X = Y takes what is left."""
+        rules = [Rule(name, "inverse", poly) for name, poly in self.bears.inverses.items()]
+        rules += _scalar_rules(self.bears.central)
+        same = [p for p in self.bears.relations.values() if len(p.terms) == len(lone(p)) == 2]
+        open_: list[Poly] = []
+        for poly in (p for p in self.bears.relations.values() if p not in same):
+            rule = self._rule(poly, lone(poly), rules)
+            rules += [rule] if rule else []
+            open_ += [] if rule else [poly]
+        probe: Instance | None = None
+        for poly in open_:
+            probe = probe or self._probe(rules + self._aliases(same, rules))
+            if probe is None or any(x != 0 for x in probe.evaluate(poly).entries()):
+                rules, probe = self._solve_too(poly, rules), None
+        return rules + self._aliases(same, rules)
+
+    def _solve_too(self, poly: Poly, rules: list[Rule]) -> list[Rule]:
+        """Add a rule for one more relation; if need be, another relation gives way and is solved for another letter."""
+        rule = self._rule(poly, _linear(poly), rules)
+        if rule is not None:
+            return [*rules, rule]
+        for old in (r for r in rules if r.kind == "matrix" and r.target in _linear(poly)):
+            others = [r for r in rules if r is not old]
+            rule = self._rule(poly, [old.target], others)
+            moved = rule and self._rule(old.poly, set(_linear(old.poly)) - {old.target}, [*others, rule])
+            if rule and moved:
+                return [*others, rule, moved]
+        return rules
+
+    def _aliases(self, same: Iterable[Poly], rules: list[Rule]) -> list[Rule]:
+        found: list[Rule] = []
+        for poly in same:
+            rule = self._rule(poly, lone(poly), rules + found)
+            found += [rule] if rule else []
+        return found
+
+    def _rule(self, poly: Poly, candidates: Iterable[str], rules: list[Rule]) -> Rule | None:
+        """Solve a relation for a candidate, the one declared last, that no other letter of the relation depends on."""
+        order = {name: i for i, name in enumerate(self.problem.alphabet.letters)}
         taken = {rule.target for rule in rules}
-        linear = sorted(a for a in unknowns(poly) if all(sum(base(x) == a for x in w) <= 1 for _, w in poly.terms))
-        for target in (*_lone(poly), *linear):
-            if target not in taken and target not in _depends(unknowns(poly) - {target}, rules):
-                rules.append(Rule(target, "matrix", poly))
-                solved.append(rules[-1])
-                break
-    return solved
+        for target in sorted(candidates, key=lambda a: (order.get(parts(a)[0], 0), a), reverse=True):
+            if target not in taken and target not in depends(unknowns(poly) - {target}, rules):
+                return Rule(target, "matrix", poly)
+        return None
+
+    def _probe(self, rules: list[Rule]) -> Instance | None:
+        """Return an instance of the rules at random values, whatever the facts say."""
+        from flint import fmpq, fmpq_mat
+
+        targets = {rule.target for rule in rules}
+        alphabet = self.problem.alphabet
+        names = {d for a in self.bears.letters for d in alphabet.shape(a)}
+        for seed in range(PROBES):
+            generator = random.Random(seed)
+            instance = Instance(alphabet, dict.fromkeys(names, PROBE_SIZE))
+            for s in sorted(self.scalars - targets):
+                instance.scalars[s] = fmpq(generator.randint(2, 99), generator.randint(2, 99))
+            for a in sorted(self.bears.letters - targets):
+                rows, cols = instance.shape(a)
+                value = fmpq_mat(rows, cols, [generator.randint(-99, 99) for _ in range(rows * cols)])
+                instance.values[a] = value + value.transpose() if alphabet.letters[parts(a)[0]].symmetric else value
+            if all(rule.apply(instance) for rule in ordered(rules)):
+                return instance
+        return None
 
 
-def _depends(letters: set[str], rules: Iterable[Rule]) -> set[str]:
+def _linear(poly: Poly) -> list[str]:
+    """Return the letters that occur at most once in every word."""
+    return [a for a in unknowns(poly) if all(sum(base(x) == a for x in w) <= 1 for _, w in poly.terms)]
+
+
+def depends(letters: set[str], rules: Iterable[Rule]) -> set[str]:
     """Return the letters that the given ones depend on, themselves included."""
     sources = {rule.target: unknowns(rule.poly) - {rule.target} for rule in rules}
     seen: set[str] = set()
-    stack_ = list(letters)
-    while stack_:
-        letter = stack_.pop()
+    stack = list(letters)
+    while stack:
+        letter = stack.pop()
         if letter not in seen:
             seen.add(letter)
-            stack_ += sources.get(letter, ())
+            stack += sources.get(letter, ())
     return seen
 
 
-def _solved_scalars(central: Mapping[str, Poly]) -> list[Rule]:
+def _scalar_rules(central: Mapping[str, Poly]) -> list[Rule]:
     rules: list[Rule] = []
     for poly in central.values():
         taken = {rule.target for rule in rules}
@@ -177,8 +189,8 @@ def _solved_scalars(central: Mapping[str, Poly]) -> list[Rule]:
     return rules
 
 
-def _sorted(rules: list[Rule]) -> tuple[Rule, ...]:
-    """Return scalars first, then each rule after those that it depends on."""
+def ordered(rules: Iterable[Rule]) -> tuple[Rule, ...]:
+    """Return the rules for scalars, then each rule after those that it depends on."""
     out = [rule for rule in rules if rule.kind == "scalar"]
     waiting = [rule for rule in rules if rule.kind != "scalar"]
     while waiting:
@@ -187,66 +199,3 @@ def _sorted(rules: list[Rule]) -> tuple[Rule, ...]:
         out += ready
         waiting = [rule for rule in waiting if rule not in ready]
     return tuple(out)
-
-
-# ------------------------------------------------------------------------------------------------ solving
-def _invert(rule: Rule, instance: Instance) -> bool:
-    value = instance.evaluate(rule.poly)
-    if value.nrows() != value.ncols() or value.det() == 0:
-        return False
-    instance.values[rule.target] = value.inv()
-    return True
-
-
-def _solve(rule: Rule, instance: Instance) -> bool:
-    """Solve poly(X) = 0, linear in X, for the solution whose free entries are zero."""
-    directions = _directions(rule.target, instance)
-    zero = directions[0] * 0
-    start = _entries(rule, instance, zero)
-    columns = [[a - b for a, b in zip(_entries(rule, instance, d), start, strict=True)] for d in directions]
-    system = stack([[*(c[i] for c in columns), -start[i]] for i in range(len(start))])
-    echelon, rank = system.rref()
-    total = zero
-    for i in range(rank):
-        pivot = next(j for j in range(len(directions) + 1) if echelon[i, j] != 0)
-        if pivot == len(directions):
-            return False
-        total += directions[pivot] * echelon[i, len(directions)]
-    instance.values[rule.target] = total
-    return True
-
-
-def _entries(rule: Rule, instance: Instance, value) -> list:
-    instance.values[rule.target] = value
-    return instance.evaluate(rule.poly).entries()
-
-
-def _directions(target: str, instance: Instance) -> list:
-    """Return a basis of the values that a letter may take."""
-    from flint import fmpq_mat
-
-    rows, cols = instance.shape(target)
-    symmetric = instance.alphabet.letters[parts(target)[0]].symmetric
-    basis = []
-    for i in range(rows):
-        for j in range(i if symmetric else 0, cols):
-            unit = fmpq_mat(rows, cols)
-            unit[i, j] = 1
-            if symmetric:
-                unit[j, i] = 1
-            basis.append(unit)
-    return basis
-
-
-def _solve_scalar(rule: Rule, instance: Instance) -> bool:
-    """Solve a + b x = 0 for a central scalar."""
-    from flint import fmpq
-
-    instance.scalars[rule.target] = fmpq(0)
-    a = instance.central(rule.poly)
-    instance.scalars[rule.target] = fmpq(1)
-    b = instance.central(rule.poly) - a
-    if b == 0:
-        return False
-    instance.scalars[rule.target] = -a / b
-    return True

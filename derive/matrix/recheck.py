@@ -54,7 +54,7 @@ class Values:
     def covers(self, poly: Poly) -> bool:
         """Tell whether every letter and scalar of a polynomial has a value."""
         letters = {a.replace("'", "") for _, word in poly.terms for a in word}
-        scalars = {s for monomial, _ in poly.terms for s in monomial}
+        scalars = {s for monomial, _ in poly.terms for s in monomial if s[0] != "δ"}
         return letters <= set(self.found.values) and scalars <= set(self.found.scalars)
 
     def size(self, dimension: str) -> int:
@@ -89,7 +89,7 @@ class Values:
                 product = [[sum((product[i][i] for i in range(len(product))), Fraction(0))]]
             factor = Fraction(c)
             for s in monomial:
-                factor *= self.found.scalars[s]
+                factor *= 0 if s[0] == "δ" else self.found.scalars[s]
             total = [[x + factor * y for x, y in zip(r, q, strict=True)] for r, q in zip(total, product, strict=True)]
         return total
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from derive.claim import Counterexample, Entries
 from derive.kernel import Poly
 from derive.matrix.hypotheses import Hypotheses
-from derive.matrix.instance import Instance
+from derive.matrix.instance import Instance, one
 from derive.matrix.plan import Plan, make_plan
 from derive.matrix.recheck import confirm
 
@@ -30,6 +30,7 @@ LADDER = (1, 2, 0, -1, 3, -2)  # values of a scalar letter, the plainest first; 
 POINTS = (2, 3, 5, Fraction(1, 2), -1)  # values of a central scalar
 ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried
 TRIES = 4000  # attempts at scalars
+EQUAL = 0.8  # how often a letter outside the claim takes the value of its twin
 
 
 def refute(
@@ -94,10 +95,10 @@ class Attempt:
     def _admissible(self, instance: Instance) -> bool:
         if any(instance.scalars.get(s, 0) < 0 for s in self.problem.nonnegative):
             return False
-        for poly in self.plan.relations.values():
-            central = all(not w for _, w in poly.terms) and not poly.rows
-            if instance.central(poly) != 0 if central else any(x != 0 for x in instance.evaluate(poly).entries()):
-                return False
+        if any(instance.central(poly) != 0 for poly in self.plan.central.values()):
+            return False
+        if any(x != 0 for poly in self.plan.relations.values() for x in instance.evaluate(poly).entries()):
+            return False
         return all(map(instance.holds, self.plan.facts.values()))
 
     def _refuted(self, instance: Instance) -> bool:
@@ -123,7 +124,7 @@ class Attempt:
             right=sides[1],
             relation=self.relation,
             scalars={name: fraction(value) for name, value in sorted(instance.scalars.items())},
-            hidden=frozenset(self.problem.inverses),
+            hidden=frozenset(self.problem.inverses) | (frozenset(names) - self.plan.shown),
             trace=self.trace,
         )
 
@@ -161,23 +162,37 @@ def _scalars(attempt: Attempt, sizes: dict[str, int]) -> Iterator[Instance]:
     """Iterate over 1 x 1 letters in the order of their total cost, the sum of their places in the ladder."""
     from flint import fmpq, fmpq_mat
 
-    plan = attempt.plan
-    signs = {f.matrix[0][0]: f.kind for f in plan.facts.values() if f.kind in ("psd", "pd") and len(f.matrix) == 1}
-    ladders: list[Sequence[int | Fraction]] = []
-    for name in plan.free:
-        kind = signs.get(Poly({((), (name,)): 1}, *attempt.problem.alphabet.shape(name)))
-        ladders.append([v for v in LADDER if not kind or v > 0 or (v == 0 and kind == "psd")])
-    ladders += [POINTS] * len(plan.free_scalars)
+    plan, ladders = attempt.plan, _ladders(attempt)
     tried = 0
     for cost in range(sum(len(ladder) - 1 for ladder in ladders) + 1):
         for places in _spread(cost, [len(ladder) for ladder in ladders]):
-            values = [fmpq(v.numerator, v.denominator) for v in (ladders[i][p] for i, p in enumerate(places))]
-            matrices = {n: fmpq_mat(1, 1, [v]) for n, v in zip(plan.free, values, strict=False)}
-            points = dict(zip(plan.free_scalars, values[len(plan.free) :], strict=True))
+            values: dict[str, fmpq] = {}
+            for name, ladder, place in zip((*plan.free, *plan.free_scalars), ladders, places, strict=True):
+                value = ladder[place]
+                values[name] = values[value] if isinstance(value, str) else fmpq(value.numerator, value.denominator)
+            matrices = {name: fmpq_mat(1, 1, [values[name]]) for name in plan.free}
+            points = {name: values[name] for name in plan.free_scalars}
             yield Instance(attempt.problem.alphabet, sizes, matrices, points)
             tried += 1
             if tried >= TRIES or attempt.survived >= ENOUGH:
                 return
+
+
+def _ladders(attempt: Attempt) -> list[Sequence[int | Fraction | str]]:
+    """Return the values to be tried for each free letter and scalar; the name of a letter stands for its value."""
+    plan, ladders = attempt.plan, list[Sequence[int | Fraction | str]]()
+    for name in plan.free:
+        kind = _sign(attempt, name)
+        values = [v for v in LADDER if not kind or v > 0 or (v == 0 and kind == "psd")]
+        ladders.append([plan.twins[name], *values] if name in plan.twins else values)
+    return ladders + [POINTS] * len(plan.free_scalars)
+
+
+def _sign(attempt: Attempt, letter: str) -> str:
+    """Return what is known of a letter itself: 'psd', 'pd' or nothing."""
+    own = {f.matrix[0][0]: f.kind for f in attempt.plan.facts.values() if len(f.matrix) == 1}
+    kind = own.get(Poly({((), (letter,)): 1}, *attempt.problem.alphabet.shape(letter)), "")
+    return kind if kind in ("psd", "pd") else ""
 
 
 def _spread(total: int, lengths: Sequence[int]) -> Iterator[tuple[int, ...]]:
@@ -192,27 +207,24 @@ def _spread(total: int, lengths: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 
 def _random(attempt: Attempt, sizes: dict[str, int], generator: random.Random) -> Instance:
-    """Draw small integer matrices; a letter that must be positive is a square."""
+    """Draw small integer matrices; a letter that must be positive is a square, a twin mostly an equal."""
     from flint import fmpq
 
-    instance = Instance(attempt.problem.alphabet, sizes)
-    positive = {
-        a: f.kind
-        for f in attempt.plan.facts.values()
-        for a in attempt.plan.free
-        if f.kind in ("psd", "pd") and len(f.matrix) == 1 and set(f.matrix[0][0].terms) == {((), (a,))}
-    }
-    for name in attempt.plan.free:
+    instance, plan = Instance(attempt.problem.alphabet, sizes), attempt.plan
+    for name in plan.free:
+        if name in plan.twins and generator.random() < EQUAL:
+            instance.values[name] = instance.values[plan.twins[name]]
+            continue
         rows, cols = instance.shape(name)
-        value = _integers(rows, cols, generator)
-        if name in positive:
+        value, kind = _integers(rows, cols, generator), _sign(attempt, name)
+        if kind:
             value = value * value.transpose()
-            if positive[name] == "pd" and value.det() == 0:
-                value += _identity(rows)
+            if kind == "pd" and value.det() == 0:
+                value += one(rows)
         elif attempt.problem.alphabet.letters[name.partition("@")[0]].symmetric:
             value += value.transpose()
         instance.values[name] = value
-    for name in attempt.plan.free_scalars:
+    for name in plan.free_scalars:
         point = Fraction(generator.choice(POINTS))
         instance.scalars[name] = fmpq(point.numerator, point.denominator)
     return instance
@@ -223,12 +235,6 @@ def _integers(rows: int, cols: int, generator: random.Random) -> fmpq_mat:
 
     high = generator.choice((1, 1, 2))
     return fmpq_mat(rows, cols, [generator.randint(-high, high) for _ in range(rows * cols)])
-
-
-def _identity(size: int) -> fmpq_mat:
-    from derive.matrix.instance import one
-
-    return one(size)
 
 
 def _simplified(attempt: Attempt, instance: Instance, deadline: float) -> Instance:

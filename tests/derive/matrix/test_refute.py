@@ -165,6 +165,14 @@ def test_central_scalars():
     assert "z = 2" in str(found)
 
 
+def test_a_relation_among_scalars_times_an_identity():
+    s = Setting()
+    X, z, zi = s.matrix("X", "n", "m"), s.scalar("z"), s.scalar("zi")
+    s.assume("z zi = 1", z * (zi * s.eye("n")) - s.eye("n"))
+    found = sides(z * X, X)
+    assert found.scalars["z"] * found.scalars["zi"] == 1
+
+
 def test_nonnegative_scalars():
     s = Setting()
     P, a = s.symmetric("P", "n", "psd"), s.scalar("a")
