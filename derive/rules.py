@@ -218,6 +218,8 @@ def substitute(poly: Poly, images: Mapping[str, Poly], alphabet: Alphabet) -> Po
                 image = alphabet.transpose(images[alphabet.flip(a)])
             if (image.rows, image.cols) != (rows, cols):
                 raise Rejected(f"the image of {a} is {image.rows} x {image.cols}, expected {rows} x {cols}")
+            if a == alphabet.flip(a) and image != alphabet.transpose(image):
+                raise Rejected(f"the image of {a} is not symmetric")
             product = product * image
         total = total + product
     return total

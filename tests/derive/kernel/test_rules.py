@@ -171,6 +171,17 @@ def test_only_square_block_matrices_are_positive(claim):
         positive(proof)
 
 
+def test_strictness_needs_a_factor_of_one_block():
+    core = ((letter("P"), Poly({}, "n", "n")), (Poly({}, "n", "n"), letter("P")))
+    context = replace(CONTEXT, facts={"both": Fact("pd", core)})
+    claim = ((square((1, "A P A'"), (1, "B P B'")),),)
+    square_ = Square(Fraction(1), (), ((letter("A"), letter("B")),), "both")
+    proof = Positivity(claim, (square_,), (((),),))
+    assert positive(proof, context=context) == "psd"
+    with pytest.raises(Rejected, match="one block"):
+        positive(replace(proof, strict=0, inverse=letter("Ai"), inverse_terms=(term("inverse"),)), context=context)
+
+
 def test_the_core_of_a_square_is_square():
     context = replace(CONTEXT, facts={"P": Fact("psd", ((letter("P"), letter("P")),))})
     with pytest.raises(Rejected, match="square block matrices"):
@@ -233,6 +244,9 @@ def test_comparison_needs_the_right_facts():
     block = {**facts(M="hurwitz"), "Q": Fact("psd", ((letter("Q"), letter("Q")), (letter("Q"), letter("Q"))))}
     with pytest.raises(Rejected, match="several blocks"):
         compare("lyapunov", comparison_context("lyapunov", facts=block))
+    for shape in (((letter("Q"), letter("Q")),), ((letter("Q"),), (letter("Q"),))):
+        with pytest.raises(Rejected, match="several blocks"):
+            compare("lyapunov", comparison_context("lyapunov", facts={**block, "Q": Fact("psd", shape)}))
     other = {**facts(Q="psd"), "M": Fact("initial", ((letter("P"),),))}
     with pytest.raises(Rejected, match="not about this matrix"):
         compare("transient", comparison_context("transient", facts=other))
@@ -257,6 +271,20 @@ UNIQUE = Uniqueness(SAME, letter("A"), Poly({}, "n", "n"), (), (term("start"),))
 
 def test_uniqueness():
     replay_uniqueness(UNIQUE, SAME, FLOW)
+
+
+def test_uniqueness_with_coefficients_on_both_sides():
+    """Z = Y X Y' and W solve the same Lyapunov equation without forcing."""
+    context = replace(
+        FLOW,
+        relations={"start": square((1, "W@t0"), (-1, "Y@t0 X Y'@t0"))},
+        derivatives={**FLOW.derivatives, "W@t": square((1, "A W@t"), (1, "W@t A'"))},
+    )
+    claim = square((1, "W@t"), (-1, "Y@t X Y'@t"))
+    proof = Uniqueness(claim, letter("A"), LETTERS.transpose(letter("A")), (), (term("start"),))
+    replay_uniqueness(proof, claim, context)
+    with pytest.raises(Rejected, match="do not make up the claim"):
+        replay_uniqueness(replace(proof, right=LETTERS.transpose(letter("A")).scale(-1)), claim, context)
 
 
 @pytest.mark.parametrize(
@@ -390,7 +418,7 @@ def test_a_moment_is_not_captured():
 
 
 def test_deltas_that_cannot_be_integrated_stay():
-    for scalars in ("δ(τ,σ)", "∫τ δ(τ,σ)", "∫τ δ(t0,τ)", "∫τ δ(τ,τ)"):
+    for scalars in ("δ(t,τ)", "δ(τ,t)", "δ(τ,σ)", "∫τ δ(τ,σ)", "∫τ δ(t0,τ)", "∫τ δ(τ,τ)"):
         kept = poly("n", "n", (1, "Phi@t,τ", scalars))
         assert sift(kept) == kept
     with pytest.raises(Rejected, match="square of δ"):
@@ -402,6 +430,9 @@ def test_substitution():
     images = {"A": letter("B"), "C'": poly("n", "m", (2, "K C'", ""))}
     before = poly("m", "n", (1, "C A P", "s"), (1, "C", ""))
     assert substitute(before, images, LETTERS) == poly("m", "n", (2, "C K' B P", "s"), (2, "C K'", ""))
+    with pytest.raises(Rejected, match="image of P is not symmetric"):
+        substitute(before, {"P": letter("K")}, LETTERS)
+    assert substitute(before, {"P": letter("Q")}, LETTERS) == poly("m", "n", (1, "C A Q", "s"), (1, "C", ""))
     with pytest.raises(Rejected, match="image of A is m x n, expected n x n"):
         substitute(before, {"A": letter("C")}, LETTERS)
 
@@ -421,7 +452,9 @@ def test_variation():
     [
         (square((1, "L B")), "L", "dL", {}, "B may depend on L"),
         (square((1, "L@τ")), "L@t", "dL@t", {}, "L@τ may depend on L@t"),
+        (square((1, "L@τ")), "L@t", "dL@t", {"parameters": frozenset({"L", "dL"})}, "L@τ may depend on L@t"),
         (square((1, "L dL")), "L", "dL", {}, "dL may depend on L"),
+        (square((1, "L dL@τ")), "L", "dL", {"parameters": frozenset({"L", "dL"})}, "dL@τ may depend on L"),
         (square((1, "L K")), "L", "dP", {}, "dP is not a direction of L"),
         (square((1, "P K")), "P", "dL", {}, "dL is not a direction of P"),
         (square((1, "L K")), "L", "C", {}, "C is not a direction of L"),
