@@ -38,7 +38,7 @@ from derive.terms import (
 TIMES, APPLY, THIN = "\u2062", "\u2061", "\u2009"  # invisible times, function application, thin space
 TOP, INTEGRAL = "⊤", "∫"
 SCRIPT = "𝒜ℬ𝒞𝒟ℰℱ𝒢ℋℐ𝒥𝒦ℒℳ𝒩𝒪𝒫𝒬ℛ𝒮𝒯𝒰𝒱𝒲𝒳𝒴𝒵"
-ADDITIVE = frozenset("+−")
+BREAKS = frozenset({"+", "−", "=", ":=", "⪰", "≻"})  # a line may be broken before these
 
 
 # ------------------------------------------------------------------------------------------------ boxes
@@ -177,10 +177,10 @@ def width(box: Box) -> float:
 
 
 def split(box: Box) -> list[Box]:
-    """Split a sum into its addends, each with the sign in front of it, where a line may be broken."""
+    """Split an equation or sum where a line may be broken: before each relation and each sign between addends."""
     pieces: list[list[Box]] = [[]]
     for item in box.items if isinstance(box, Row) else (box,):
-        if isinstance(item, Op) and item.form == "infix" and item.text in ADDITIVE and pieces[-1]:
+        if isinstance(item, Op) and item.form == "infix" and item.text in BREAKS and pieces[-1]:
             pieces.append([])
         pieces[-1].append(item)
     return [row(p) for p in pieces]

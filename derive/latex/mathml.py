@@ -25,6 +25,7 @@ from derive.terms import Equation, Term
 
 SPACE = '<mspace width=".17em"/>'
 CAPITAL_GREEK = frozenset("ΓΔΘΛΞΠΣΥΦΨΩ")  # upright, as in LaTeX
+DESCENDING = frozenset("Qfgjpqyβγζημξρςφϕχψ")
 SINGLE = {":=": "≔"}
 
 
@@ -51,7 +52,7 @@ def markup(box: Box) -> str:
             return f"<mrow>{_many(box)}</mrow>"
         case Scripted(base, sub, sup):
             tag = "msub" if sup is None else "msup" if sub is None else "msubsup"
-            return f"<{tag}>{_base(base)}{''.join(markup(b) for b in (sub, sup) if b is not None)}</{tag}>"
+            return f"<{tag}>{_base(base, sub)}{''.join(markup(b) for b in (sub, sup) if b is not None)}</{tag}>"
         case Accented(base, accent):
             mark = f'<mo stretchy="false">{ACCENTS[accent][1]}</mo>'
             return f'<mover accent="true">{markup(base)}{mark}</mover>'
@@ -75,8 +76,11 @@ def _fenced(box: Fenced) -> str:
     return f"<mo{fixed}>{box.left}</mo>{_many(box.body)}<mo{fixed}>{box.right}</mo>"
 
 
-def _base(box: Box) -> str:
-    """Print what carries a script; a bracket counts as no higher than a capital, so that the script stays low."""
+def _base(box: Box, sub: Box | None) -> str:
+    """Print what carries scripts; neither a bracket nor the tail of a letter moves them away from the line."""
+    letter = box.base if isinstance(box, Accented) else box
+    if sub and isinstance(letter, Letter) and letter.text in DESCENDING:
+        return f'<mpadded depth="0">{markup(box)}</mpadded>'
     if not isinstance(box, (Fenced, Row)) or tall(box):
         return markup(box)
     return f'<mpadded height=".62em">{_fenced(box) if isinstance(box, Fenced) else _many(box)}</mpadded>'

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable
 from functools import cache
 from importlib.util import find_spec
 from io import BytesIO
@@ -31,13 +30,14 @@ def italic(char: str) -> str:
     return {"ϵ": "𝜖", "ϑ": "𝜗", "ϕ": "𝜙", "ϱ": "𝜚"}.get(char, char)
 
 
-def embedded(text: str) -> str:
-    """Return a ``data:`` address of the font with the characters of a text, their italics, and stretchy brackets."""
-    return "data:font/woff2;base64," + b64encode(_subset(frozenset(text))).decode("ascii")
+def embedded(text: str, letters: str) -> str:
+    """Return a ``data:`` address of the font with the characters of a text, the italics of letters, and brackets."""
+    characters = frozenset(text) | frozenset(map(italic, letters)) | frozenset(STRETCHY)
+    return "data:font/woff2;base64," + b64encode(_subset(characters)).decode("ascii")
 
 
 @cache
-def _subset(characters: Iterable[str]) -> bytes:
+def _subset(characters: frozenset[str]) -> bytes:
     from fontTools.subset import Options, Subsetter
     from fontTools.ttLib import TTFont
 
@@ -45,7 +45,7 @@ def _subset(characters: Iterable[str]) -> bytes:
     options.drop_tables += ["DSIG"]
     font = TTFont(font_file(), recalcTimestamp=False)
     subsetter = Subsetter(options)
-    subsetter.populate(text="".join(sorted({*characters, *map(italic, characters), *STRETCHY})))
+    subsetter.populate(unicodes=sorted(map(ord, characters)))
     subsetter.subset(font)
     font.flavor = "woff2"
     out = BytesIO()

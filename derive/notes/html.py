@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from html import escape
+from html import escape, unescape
 from importlib.resources import files
 
-from derive.latex.layout import ADDITIVE, Box, Op, layout
-from derive.latex.layout import Row as BoxRow
+from derive.latex.layout import Box, Op, layout, split, width
+from derive.latex.layout import row as beside
 from derive.latex.mathml import math, mathml
 from derive.latex.plain import plain
 from derive.notes.font import embedded
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table
-from derive.terms import Equation, Sum, Term
+from derive.terms import Equation, Term
 
+WIDE = 16  # em
 LONG = 36  # characters of a left side that leaves no room for the right side beside it
 PUNCTUATED = re.compile(
     r"(\(?(?:<a [^>]*>)?<math>(?:(?!</math>).)*</math>(?:</a>)?[,.;:)]+)"
@@ -45,9 +46,9 @@ def html(document: Document) -> str:
         font="{font}",
     )
     style = files("derive.notes").joinpath("style.css").read_text(encoding="utf-8")
-    characters = "".join(re.findall(r"<math.*?</math>", page, re.DOTALL))
-    text = re.sub(r"<[^>]*>", "", characters)
-    return page.replace("{style}", style).replace("{font}", embedded(text))
+    shown = unescape(re.sub(r"<[^>]*>", "", re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)))
+    letters = "".join(unescape(t) for t in re.findall(r"<mi>(.)</mi>", page))
+    return page.replace("{style}", style).replace("{font}", embedded(shown, letters))
 
 
 _PAGE = """<!DOCTYPE html>
@@ -106,7 +107,7 @@ def _block(block: Block) -> str:
 
 def _row(row: Row) -> str:
     lhs = mathml(row.lhs) if row.lhs is not None else ""
-    rhs = "".join(math(a).replace("<math><mo>", '<math><mo form="infix">', 1) for a in _addends(row))
+    rhs = _breakable(beside((Op(row.relation), layout(row.rhs))))
     number = f'<a class="n" href="#{row.id}">({escape(row.number)})</a>' if row.number else '<span class="n"></span>'
     rests = [row.rule] * bool(row.rule) + [f"from {_inline(row.uses)}"] * bool(row.uses)
     uses = f' <span class="uses">{", ".join(rests)}</span>' if rests else ""
@@ -117,15 +118,10 @@ def _row(row: Row) -> str:
     return f'<div class="row" id="{row.id}"><span class="l">{lhs}</span><span class="r">{rhs}</span>{number}{why}</div>'
 
 
-def _addends(row: Row) -> list[BoxRow]:
-    """Split the right side before each + and −, so that a long sum wraps there like running text."""
-    box = layout(row.rhs)
-    lines: list[list[Box]] = [[Op(row.relation)]]
-    for item in box.items if isinstance(box, BoxRow) and isinstance(row.rhs, Sum) else (box,):
-        if isinstance(item, Op) and item.text in ADDITIVE and item.form == "infix":
-            lines.append([])
-        lines[-1].append(item)
-    return [BoxRow(tuple(line)) for line in lines]
+def _breakable(box: Box) -> str:
+    """Print mathematics; what is wider than a phone becomes several elements, and wraps between them like text."""
+    pieces = split(box) if width(box) > WIDE else [box]
+    return "".join(math(p).replace("<math><mo>", '<math><mo form="infix">', 1) for p in pieces)
 
 
 def _badge(badge: str) -> str:
@@ -145,7 +141,7 @@ def _note(note: Note) -> str:
     parts = [f'<p class="printed">As printed: {_inline(note.printed)}</p>', f"<p>{_inline(note.text)}</p>"]
     parts += map(_table, note.evidence)
     if note.true is not None:
-        parts.append(f'<p class="true">{_badge("proved")} {mathml(note.true)} {_link(note.proof)}</p>')
+        parts.append(f'<p class="true">{_badge("proved")} {_inline((note.true,))} {_link(note.proof)}</p>')
     elif note.proof is not None:
         parts.append(f'<p class="true">{_badge("proved")} the statement with its hypotheses: {_link(note.proof)}</p>')
     return f'<aside class="note {note.badge}" id="{note.id}"><h4>{title}</h4>{"".join(parts)}</aside>'
@@ -167,5 +163,5 @@ def _inline(text: Inline) -> str:
             case Link():
                 out.append(_link(part))
             case Term() | Equation():
-                out.append(mathml(part))
+                out.append(_breakable(layout(part)))
     return PUNCTUATED.sub(r'<span class="nb">\1</span>', "".join(out))

@@ -8,11 +8,12 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Literal
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Rule, Step
-from derive.terms import Dot, Equation, Expect, Inverse, Symbol, Term
+from derive.terms import Dot, Equation, Expect, Inverse, Number, Symbol, Term
 
 __all__ = [
     "SOURCES",
@@ -336,6 +337,15 @@ def _evidence(evidence: Evidence) -> Table:
     values: list[str | Term | Equation | Link] = []
     for i, (name, value) in enumerate(evidence.values):
         values += [", "] if i else []
-        values += [name, f" = {value}"] if isinstance(name, Term) else [f"{name} = {value}"]
-    rows = tuple(((label,), (value,)) for label, value in evidence.results)
+        number = _value(value)
+        if isinstance(name, Term) and isinstance(number, Term):
+            values.append(Equation(name, "=", number))
+        else:
+            values += [name, " = ", number]
+    rows = tuple(((label,), (_value(value),)) for label, value in evidence.results)
     return Table(("counterexample" if len(rows) > 1 else "evidence", "value"), rows, tuple(values))
+
+
+def _value(text: str) -> str | Term:
+    """Return a rational number as a term, anything else as text with proper minus signs."""
+    return Number(Fraction(text)) if re.fullmatch(r"-?\d+(/\d+)?", text) else re.sub(r"(?<!\w)-(?=\d)", "−", text)
