@@ -98,11 +98,12 @@ def _inverse_relations(problem: Hypotheses, name: str, poly: Poly) -> list[Poly]
 def _defines_unused(poly: Poly, counts: Mapping[str, int], fixed: set[str], problem: Hypotheses) -> bool:
     """Tell whether a relation only gives a value to a letter that nothing else mentions.
 
-    A relation with an integral fixes a trajectory; a value of it that nothing else mentions, as the first, is free.
+    The variation of constants e(t) = Phi(t,t0) e(t0) + (an integral) does so for e(t0), as Phi(t,t0) is invertible.
     """
     turned = problem.alphabet.transpose(poly)
     if any(s.startswith("∫") for m, _ in poly.terms for s in m):
-        return any("@" in a and a not in fixed and counts[a] == 1 for a in unknowns(poly))
+        starts = [w[1] for m, w in poly.terms if not m and len(w) == 2 and parts(w[0])[2] == ("t", "t0")]
+        return any(parts(a)[2] == ("t0",) and a not in fixed and counts.get(a) == 1 for a in starts)
     for letter in lone(poly):
         symmetric = problem.alphabet.letters[parts(letter)[0]].symmetric
         free = letter not in fixed and letter not in problem.inverses and counts[letter] == 1

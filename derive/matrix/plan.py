@@ -50,7 +50,7 @@ def make_plan(problem: Hypotheses, claim: Iterable[Poly]) -> Plan | None:
     wanted = set[str]().union(*map(unknowns, polys))
     bears = bearing(problem, wanted)
     scalars = bears.scalars() | {s for p in polys for m, _ in p.terms for s in m}
-    if any(s[0] == "∫" for s in scalars) or any(s[0] == "δ" for p in polys for m, _ in p.terms for s in m):
+    if any(s[0] == "∫" for s in scalars):
         return None
     scalars = {s for s in scalars if s[0] != "δ"}
     rules = Chooser(problem, bears, scalars).choose()

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from derive.claim import Counterexample, Entries
 from derive.kernel import Poly
-from derive.matrix.hypotheses import Hypotheses
+from derive.matrix.hypotheses import Hypotheses, at_start
 from derive.matrix.instance import Instance, one
 from derive.matrix.plan import Plan, make_plan
 from derive.matrix.recheck import confirm
@@ -47,7 +47,8 @@ def refute(
         seconds: bound on the time.
 
     Returns:
-        The instance, or None: nothing was found, or a hypothesis on the claim's letters (an integral) has no value.
+        The instance, or None if nothing was found. Where integrals from t0 to t bear on the claim, the instance is at
+        t = t0, and its letters are named so. A claim with a Dirac delta is not tried.
 
     Example:
         >>> from derive.kernel import Alphabet, Letter
@@ -57,9 +58,13 @@ def refute(
         >>> found.left != found.right
         True
     """
+    if _has_delta(lhs) or _has_delta(rhs):
+        return None
     plan = make_plan(problem, (lhs, rhs))
     if plan is None:
-        return None
+        problem, lhs, rhs = problem.at_start(), at_start(lhs), at_start(rhs)
+        plan = make_plan(problem, (lhs, rhs))
+        assert plan is not None, "no integral is left at the start"
     attempt = Attempt(problem, plan, lhs, rhs, relation, trace)
     deadline = time.monotonic() + seconds
     for instance in _candidates(attempt):
@@ -70,6 +75,10 @@ def refute(
             if confirm(found, lhs, rhs, problem):
                 return found
     return None
+
+
+def _has_delta(poly: Poly) -> bool:
+    return any(s.startswith("δ") for m, _ in poly.terms for s in m)
 
 
 @dataclass

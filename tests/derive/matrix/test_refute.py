@@ -137,11 +137,87 @@ def test_definitions_elsewhere_and_integrals_do_not_matter():
     assert sides(X, B * A).values.keys() == {"A", "B", "X"}
 
 
-def test_an_integral_that_matters_leaves_it_undecided():
+def test_integrals_that_matter_vanish_at_the_start():
+    """X(t) = Phi X(t0) Phi' + (an integral of Phi N Phi'): at t = t0 every X(t0) >= 0 occurs."""
     s = Setting()
-    A, Z = s.matrices("A Z", "n", "n")
-    s.relations["Z"] = Poly({(("∫τ",), ("A",)): 1, ((), ("Z",)): -1}, "n", "n")
-    assert sides(A, Z) is None
+    s.matrix("Phi", "n", "n"), s.symmetric("N", "n", "psd"), s.matrix("A", "n", "n")
+    s.symmetric("X", "n")
+    X, A, N = (Poly({((), (a,)): 1}, "n", "n") for a in ("X@t", "A", "N"))
+    flow = {((), ("Phi@t,t0", "X@t0", "Phi'@t,t0")): -1, (("∫τ",), ("Phi@t,τ", "N", "Phi'@t,τ")): -1}
+    s.relations["X"] = X + Poly(flow, "n", "n")
+    s.relations["Phi"] = Poly({((), ("Phi@t,t",)): 1, ((), ()): -1}, "n", "n")
+    s.facts["X0"] = Fact("initial", ((X,),))
+    found = refute(A * X, X * A, s.hypotheses)
+    assert "X@t0" in found.values
+    assert refute(X, zero(X), s.hypotheses, relation="⪰", seconds=0.3) is None
+    assert refute(X, N, s.hypotheses, relation="⪰") is not None
+    integral = Poly({(("∫τ",), ("Phi@t,τ", "N", "Phi'@t,τ")): 1}, "n", "n")
+    assert refute(integral, zero(X), s.hypotheses, seconds=0.1) is None
+    assert refute(integral + X, zero(X), s.hypotheses) is not None
+
+
+# ------------------------------------------------------------------------------------------------ a whole theory
+def filter_theory():
+    """The steady filter with its lemmas, another gain, and another solution of its Riccati equation."""
+    s = Setting()
+    A, C = s.matrix("A", "n", "n"), s.matrix("C", "m", "n")
+    Q, R, P = s.symmetric("Q", "n", "psd"), s.symmetric("R", "m", "pd"), s.symmetric("P", "n", "psd")
+    L, L_k, G = s.matrix("L", "n", "m"), s.matrix("L_k", "n", "m"), s.matrix("G", "n", "m")
+    P_G, P_o = s.symmetric("P_G", "n", "psd"), s.symmetric("P_o", "n", "psd")
+    Si, So = s.inverse("Si", C * P * C.T + R), s.inverse("So", C * P_o * C.T + R)
+
+    def step(gain: Expr, X: Expr) -> Expr:
+        return (A - gain * C) * X * (A - gain * C).T + Q + gain * R * gain.T
+
+    s.assume("covariance of another gain", step(G, P_G) - P_G)
+    s.assume("L_k = L", L_k - L)
+    s.assume("stationary gain", L * (C * P * C.T + R) - A * P * C.T)
+    s.assume("another solution", A * P_o * A.T + Q - A * P_o * C.T * So * C * P_o * A.T - P_o)
+    s.assume("lemma: gain", L - A * P * C.T * Si)
+    s.assume("Riccati", A * P * A.T + Q - A * P * C.T * Si * C * P * A.T - P)
+    s.assume("lemma: Stein", step(L, P) - P)
+    s.stable("closed loop", "schur", A - L_k * C)
+    s.stable("other closed loop", "schur", A - G * C)
+    return s, A, C, Q, P, L, P_G
+
+
+def test_lemmas_among_the_hypotheses_do_not_get_in_the_way():
+    s, A, C, Q, P, L, P_G = filter_theory()
+    plan = make_plan(s.hypotheses, [P.poly])
+    targets = {rule.target for rule in plan.rules}
+    assert {"Q", "P_G", "L", "L_k", "Si", "So"} == targets
+    assert plan.twins == {"P_o": "P"}
+    found = sides(A * P * A.T + Q, P)
+    assert found is not None
+    assert found.values["P_o"] == found.values["P"]
+    assert "P_G" in found.values
+    assert "P_G" not in str(found)
+    assert sides(P, (A - L * C) * P * A.T + Q, seconds=0.2) is None
+    assert sides(P_G, P, relation="⪰", seconds=0.3) is None
+    assert sides(P, P_G, relation="⪰") is not None
+
+
+def test_deltas_vanish_between_different_times():
+    s = Setting()
+    S, R = s.symmetric("S", "m", "psd"), s.matrix("R", "m", "m")
+    s.relations["white"] = Poly({((), ("R@t,τ",)): 1, (("δ(t,τ)",), ("S",)): -1}, "m", "m")
+    s.relations["again"] = Poly({((), ("R@t,τ",)): 1, (("δ(t,τ)",), ("S",)): -1, ((), ("R@t,τ", "S")): 1}, "m", "m")
+    found = sides(S * S, S)
+    assert found.values["R@t,τ"] == ((0,),)
+    delta = Poly({(("δ(t,τ)",), ("S",)): 1}, "m", "m")
+    assert refute(delta, zero(delta), s.hypotheses) is None
+    assert R.poly.rows == "m"
+
+
+def test_variation_of_constants_is_met_by_the_first_value():
+    s = Setting()
+    A, x = s.matrix("A", "n", "n"), s.matrix("x", "n", "n")
+    s.matrix("Phi", "n", "n")
+    flow = {((), ("x",)): 1, ((), ("Phi@t,t0", "x@t0")): -1, (("∫τ",), ("Phi@t,τ", "A")): -1}
+    s.relations["flow"] = Poly(flow, "n", "n")
+    assert sides(A * x, x * A).values.keys() == {"A", "x"}
+    s.relations["start"] = Poly({((), ("x@t0",)): 1, ((), ("A",)): -1}, "n", "n")
+    assert sides(A * x, x * A).values.keys() >= {"x@t0"}
 
 
 def test_a_linear_relation_is_solved():
