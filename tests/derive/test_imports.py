@@ -30,9 +30,14 @@ def loaded(code):
 def command(*arguments):
     """Return code that runs a command line and goes on."""
     package, *rest = arguments
-    return (
-        f"sys.argv = {list(arguments)}\nfrom {package}.cli import cli\ntry: cli.main({rest})\nexcept SystemExit as end: assert not end.code, end.code"
-    )
+    return f"""
+sys.argv = {list(arguments)}
+from {package}.cli import cli
+try:
+    cli.main({rest})
+except SystemExit as end:
+    assert not end.code, end.code
+"""
 
 
 @pytest.mark.parametrize("code", ["import derive", "import lmi"])
