@@ -59,7 +59,7 @@ class Digits:
 
 @dataclass(frozen=True)
 class Op:
-    """An operator: 'infix' with space around it, 'prefix' with space before it, or 'tight' without."""
+    """An operator: 'infix' with space around it, 'prefix' in front of its operand, or 'tight' without space."""
 
     text: str
     form: str = "infix"
@@ -247,11 +247,11 @@ def layout(term: Term | Equation) -> Box:
         case Sum(addends):
             return _sum(addends)
         case Transpose(Inverse(body)):
-            return _power(body, row((Op("−", "tight"), Op(TOP, "tight"))))
+            return _power(body, row((Op("−", "prefix"), Op(TOP, "tight"))))
         case Transpose(body):
             return _power(body, Op(TOP, "tight"))
         case Inverse(body):
-            return _power(body, row((Op("−", "tight"), Digits("1"))))
+            return _power(body, row((Op("−", "prefix"), Digits("1"))))
         case Block(rows):
             return Table(tuple(tuple(layout(t) for t in r) for r in rows))
         case Delta(one, two):

@@ -48,6 +48,8 @@ def markup(box: Box) -> str:
             return f"<mn>{text}</mn>"
         case Op(text, form):
             return _operator(text, form)
+        case Row((Op(sign, "prefix"), *rest)):  # what stands first in its row is a prefix without saying so
+            return f"<mrow><mo>{sign}</mo>{''.join(map(markup, rest))}</mrow>"
         case Row():
             return f"<mrow>{_many(box)}</mrow>"
         case Scripted(base, sub, sup):

@@ -108,7 +108,7 @@ def _block(block: Block) -> str:
 def _row(row: Row) -> str:
     lhs = mathml(row.lhs) if row.lhs is not None else ""
     rhs = _breakable(beside((Op(row.relation), layout(row.rhs))))
-    number = f'<a class="n" href="#{row.id}">({escape(row.number)})</a>' if row.number else '<span class="n"></span>'
+    number = f'<a class="n" href="#{row.id}">({escape(row.number)})</a>' if row.number else ""
     rests = [row.rule] * bool(row.rule) + [f"from {_inline(row.uses)}"] * bool(row.uses)
     uses = f' <span class="uses">{", ".join(rests)}</span>' if rests else ""
     uses += f" <b>{escape(row.message)}</b>" if row.message else ""
