@@ -31,10 +31,11 @@ from derive.derivation import (
     learn,
     order_claim,
 )
-from derive.kernel import Poly, Rejected, identity, sample
+from derive.kernel import Poly, Rejected
 from derive.kernel import Term as Addend
+from derive.matrix.positivity import prove_comparison, prove_positive
 from derive.matrix.search import prove
-from derive.rules import Comparison, Grid, Positivity, Square, Uniqueness, at_start, differentiate, rate_equation
+from derive.rules import Context, Square, Uniqueness, at_start, rate_equation
 from derive.terms import Equation, Reading, Term, lower
 
 
@@ -112,15 +113,16 @@ class Builder:
 
     def prove(self, claim: Poly, using: Sequence[str], trace: bool = False, label: str = "") -> tuple[Addend, ...]:
         """Find the addends of a certificate from the named relations and lemmas."""
-        relations = self.reading.context.relations
-        allowed = {r: relations[r] for name in using for r in names_of(name, relations)}
-        alphabet = self.reading.context.alphabet
-        found = prove(claim, allowed, alphabet, trace=trace)
-        if found is None and sample(claim) != claim:
-            found = prove(sample(claim), allowed, alphabet, trace=trace)
+        found = prove(claim, self._with_only(using).relations, self.reading.context.alphabet, trace=trace)
         if found is None:
             raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(using) or 'nothing'}")
         return found.terms
+
+    def _with_only(self, using: Sequence[str]) -> Context:
+        """Return what may be used with no other relations than the named declarations and lemmas."""
+        relations = self.reading.context.relations
+        allowed = {r: relations[r] for name in using for r in names_of(name, relations)}
+        return replace(self.reading.context, relations=allowed)
 
     def record(self, step: Step) -> Step:
         """Replay a step with the kernel and keep it; a lemma may be used from now on."""
@@ -186,39 +188,25 @@ class Builder:
         squares: Sequence[SquareOf],
         using: Sequence[str] = (),
         *,
-        strict: tuple[int, Term] | None = None,
+        witness: Term | None = None,
         number: str = "",
         source: str = "",
     ) -> Step:
-        """Prove lhs ⪰ rhs (or ≻: ``strict`` is the index of the square and the right inverse of its factor)."""
-        claim = order_claim(statement, self.reading)
+        """Prove lhs ⪰ rhs, or lhs ≻ rhs: one square is positive definite, ``witness`` its factor's right inverse."""
+        context = self._with_only(using)
         made = [Square(s.coefficient, (), lower(s.factor, self.reading), s.fact) for s in squares]
-        terms = tuple(tuple(self.prove(rest, using, label=name) for rest in row) for row in self._rests(claim, made))
-        proof = Positivity(claim, tuple(made), terms)
-        if strict:
-            inverse = lower(strict[1], self.reading)[0][0]
-            injective = made[strict[0]].factor[0][0] * inverse - identity(claim[0][0].rows)
-            proof = replace(
-                proof, strict=strict[0], inverse=inverse, inverse_terms=self.prove(injective, using, label=name)
-            )
+        proof = prove_positive(
+            order_claim(statement, self.reading),
+            context,
+            made,
+            strict=statement.relation == "≻",
+            inverse=lower(witness, self.reading)[0][0] if witness else None,
+        )
+        if proof is None:
+            raise NotDerived(f"{self.key}: no certificate for {name} from {', '.join(using) or 'nothing'}")
         done = Proof(positivity=proof)
         step = Step(name, statement, "positivity", _text(reason), done, _used(done), number, source, True)
         return self._display(step)
-
-    def _rests(self, claim: Grid, squares: Sequence[Square]) -> Grid:
-        flip = self.reading.context.alphabet.transpose
-        out: list[tuple[Poly, ...]] = []
-        for i, row in enumerate(claim):
-            line: list[Poly] = []
-            for j, rest in enumerate(row):
-                for s in squares:
-                    core = self.reading.context.fact(s.fact, "psd", "pd").matrix
-                    for k, core_row in enumerate(core):
-                        for m, h in enumerate(core_row):
-                            rest = rest - (s.factor[i][k] * h * flip(s.factor[j][m])).scale(s.coefficient, s.scalars)
-                line.append(rest)
-            out.append(tuple(line))
-        return tuple(out)
 
     def compare(
         self,
@@ -235,13 +223,10 @@ class Builder:
         source: str = "",
     ) -> Step:
         """Prove lhs ⪰ rhs by comparison: Lyapunov or Stein equation, or from the initial time on."""
-        context, flip = self.reading.context, self.reading.context.alphabet.transpose
         d, m = order_claim(statement, self.reading)[0][0], lower(matrix, self.reading)[0][0]
-        f = context.fact(forcing, "psd", "pd").matrix[0][0]
-        equation = m * d * flip(m) - d + f if kind == "stein" else m * d + d * flip(m) + f
-        if kind == "transient":
-            equation = equation - differentiate(d, context)
-        proof = Comparison(kind, d, m, stable, forcing, self.prove(equation, using, label=name))
+        proof = prove_comparison(kind, d, m, stable, forcing, self._with_only(using))
+        if proof is None:
+            raise NotDerived(f"{self.key}: no certificate for {name} from {', '.join(using) or 'nothing'}")
         done = Proof(comparison=proof)
         step = Step(name, statement, "comparison", _text(reason), done, _used(done), number, source, True)
         return self._display(step)

@@ -148,7 +148,7 @@ def _derive_observer(b: Builder) -> None:
             Equation(innovation(C, P_, R), "≻", Zero("", "")),
             "a congruence plus a positive matrix",
             [SquareOf(C, f"{P_.name} >= 0"), SquareOf(EYE, "R > 0")],
-            strict=(1, EYE),
+            witness=EYE,
         )
     b.say("and its equations, as the lecture on the Luenberger observer derives them,")
     b.given("Riccati recursion", "gain of the observer", "Riccati equation", "steady gain of the observer")

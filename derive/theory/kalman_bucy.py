@@ -93,10 +93,20 @@ def _noise(t: Theory) -> None:
     t.assume("W >= 0", W, "⪰", text="an intensity is not negative")
     t.assume("V > 0", V, "≻", text="every output is noisy")
     t.inverse("V^-1", V, "l", symmetric=True, because="V > 0")
-    P_L = t.varying("P_L", "m", "m", Glyph("P", sub="L"), symmetric=True, meaning="error covariance for any gain")
+    P_L = t.varying(
+        "P_L",
+        "m",
+        "m",
+        Glyph("P", sub="L"),
+        symmetric=True,
+        parameter=False,
+        meaning="error covariance for any gain",
+    )
     t.define("P_L", Expect(error * error.T), P_L)
     A_L = s["A"] - s["L"] * s["C"]
-    Phi = t.matrix("Phi", "m", "m", Glyph("Φ"), constant=False, meaning="transition matrix of A - L C")
+    Phi = t.matrix(
+        "Phi", "m", "m", Glyph("Φ"), constant=False, parameter=False, meaning="transition matrix of A - L C"
+    )
     for start in ("t0", "τ"):
         t.define(f"Phi(t,{start})", Dot(Phi.at("t", start)), A_L * Phi.at("t", start))
     t.define("Phi(t,t)", Phi.at("t", "t"), Identity("m"))
@@ -113,7 +123,7 @@ def _optimum(t: Theory) -> None:
     t.define("K(t)", K * V, P * C.T, "the gain where the gradient vanishes")
     t.define("P(t)", Dot(P), A * P + P * A.T + W - P * C.T * V.inv * C * P)
     t.fact("P_L(t0) >= P(t0)", "initial", s["P_L"] - P, "every gain starts from the same error covariance")
-    t.assume("optimal", s["L"], "=", K, "the filter uses the Kalman gain")
+    t.assume("optimal", s["L"], "=", K, "the filter uses the Kalman gain", case=True)
     t.assume("P_L(t0)", s["P_L"].at("t0"), "=", P.at("t0"), "the same start")
 
 
@@ -122,14 +132,23 @@ def _steady(t: Theory) -> None:
     C, V = s["C"], s["V"]
     P = t.matrix("P", "m", "m", symmetric=True, meaning="steady error covariance", unit="[state]^2")
     K = t.matrix("K", "m", "l", meaning="steady Kalman gain")
-    t.assume("steady P", s["P(t)"], "=", P, "the steady state")
-    t.assume("steady K", s["K(t)"], "=", K, "the steady state")
+    t.assume("steady P", s["P(t)"], "=", P, "the steady state", case=True)
+    t.assume("steady K", s["K(t)"], "=", K, "the steady state", case=True)
     L = t.matrix("Lc", "m", "l", Glyph("L", sub="∞"), meaning="any constant stabilising gain")
     P_L = t.matrix("Pc", "m", "m", Glyph("P", sub="L∞"), symmetric=True, meaning="its steady error covariance")
     closed = s["A"] - L * C
     t.fact("A - L C Hurwitz", "hurwitz", closed, "the gain stabilises")
     t.define("steady covariance of a gain", closed * P_L + P_L * closed.T + s["W"] + L * V * L.T, Zero("m", "m"))
-    Sigma = t.matrix("Sigma", "l", "l", Glyph("Σ", sub="z-ȳ"), symmetric=True, meaning="output error covariance")
+    Sigma = t.matrix(
+        "Sigma",
+        "l",
+        "l",
+        Glyph("Σ", sub="z-ȳ"),
+        symmetric=True,
+        constant=False,
+        parameter=False,
+        meaning="output error covariance",
+    )
     output_error = t.signal("ztilde", "l", Glyph("z", accent="tilde"), meaning="output error")
     t.define("output error", output_error, s["z"] - s["ybar"])
     t.define("Sigma", Expect(output_error * output_error.T), Sigma)
@@ -141,14 +160,23 @@ def _frequency(t: Theory) -> None:
     K, size = s["K"], Identity("m")
     point = t.scalar("s", meaning="a complex number")
     j, omega = t.scalar("j", Glyph("j", upright=True), meaning="imaginary unit"), t.scalar("ω", meaning="frequency")
-    Phi_y = t.matrix("Phi_y", "l", "l", Glyph("Φ", sub="y"), constant=False, meaning="spectrum of the output")
     for name, value, shown in (("s", point * size, "s"), ("jω", j * omega * size, "ω")):
         plus, minus = value - A, -value - A
         t.fact(f"{name} regular", "invertible", plus, GENERIC)
         t.fact(f"-{name} regular", "invertible", minus, GENERIC)
         t.inverse(f"({name}I-A)^-1", plus, "m", because=f"{name} regular")
         t.inverse(f"(-{name}I-A)^-1", minus, "m", because=f"-{name} regular")
-        t.define(f"Phi_y({shown})", Phi_y.at(shown), C * plus.inv * W * minus.inv.T * C.T + V)
+        spectrum = t.matrix(
+            f"Phi_y({shown})",
+            "l",
+            "l",
+            Glyph("Φ", sub="y"),
+            constant=False,
+            show_args=(shown,),
+            meaning="spectrum of the output",
+        )
+        t.complex.add(spectrum.name)
+        t.define(f"Phi_y({shown})", spectrum, C * plus.inv * W * minus.inv.T * C.T + V)
     closed = point * size - A + K * C
     t.fact("s closed loop", "invertible", closed, GENERIC)
     t.inverse("(sI-A+KC)^-1", closed, "m", because="s closed loop")
@@ -393,13 +421,13 @@ def _derive_output_error(b: Builder) -> None:
 def _derive_factorisation(b: Builder) -> None:
     s = b.theory.symbols
     A, C, V, K, size, one = s["A"], s["C"], s["V"], s["K"], Identity("m"), Identity("l")
-    Phi_y, riccati_and_gain = s["Phi_y"], ("algebraic Riccati equation", "steady gain", "V^-1")
+    riccati_and_gain = ("algebraic Riccati equation", "steady gain", "V^-1")
     b.heading("Spectral factorisation")
     b.say("The Popov function, at a generic complex number and on the imaginary axis, is")
     b.given("Phi_y(s)", "Phi_y(ω)", numbers=("16", "13"), source=SOURCE)
     for name, value, shown in (("s", s["s"] * size, "s"), ("jω", s["j"] * s["ω"] * size, "ω")):
         plus, minus = value - A, -value - A
-        chain = b.chain(Phi_y.at(shown))
+        chain = b.chain(s[f"Phi_y({shown})"])
         factor, other = one + C * plus.inv * K, one + C * minus.inv * K
         chain.to(
             factor * V * other.T,

@@ -260,7 +260,7 @@ def _derive_gain(b: Builder) -> None:
         Equation(sigma, "≻", Zero("", "")),
         "a congruence plus a positive matrix; so the inverse below exists",
         [SquareOf(C, "P_{k-1} >= 0"), SquareOf(Identity("l"), "R_{k-1} > 0")],
-        strict=(1, Identity("l")),
+        witness=Identity("l"),
     )
     b.heading("Optimal gain")
     b.say(

@@ -170,7 +170,7 @@ def _derive_information(b: Builder) -> None:
         "the Joseph form, whose first factor has an inverse",
         [SquareOf(ONE - L_f * C, "P > 0"), SquareOf(L_f, "R > 0")],
         ["Joseph form", "L_f", *both],
-        strict=(0, ONE + P * weight),
+        witness=ONE + P * weight,
     )
     b.say("then both covariances have an inverse, and a measurement adds its information:")
     b.state(

@@ -87,7 +87,7 @@ def _derive_limit(b: Builder) -> None:
         Equation(innovation(C, P, R), "≻", Zero("", "")),
         "a congruence plus a positive matrix",
         [SquareOf(C, "P >= 0"), SquareOf(Identity("l"), "R > 0")],
-        strict=(1, Identity("l")),
+        witness=Identity("l"),
     )
     steady = ["P_{k-1} = P", "constant Q", "constant R", "constant S", "Sigma_k^-1", "Sigma^-1"]
     old = tuple(s[f"{k}_{{k-1}}"] for k in "PQRS")
@@ -166,7 +166,7 @@ def _derive_optimality(b: Builder) -> None:
         Equation(innovation(C, other, R), "≻", Zero("", "")),
         "as before",
         [SquareOf(C, "P_o >= 0"), SquareOf(Identity("l"), "R > 0")],
-        strict=(1, Identity("l")),
+        witness=Identity("l"),
     )
     b.given("another solution", "L_o")
     b.positive(
@@ -202,7 +202,7 @@ def _derive_monotonicity(b: Builder) -> None:
             Equation(innovation(C, P, R), "≻", Zero("", "")),
             "as before",
             [SquareOf(C, f"P_{i} >= 0"), SquareOf(Identity("l"), "R > 0")],
-            strict=(1, Identity("l")),
+            witness=Identity("l"),
         )
     b.given("L_1", "L_2")
     difference = riccati_step_with_cross(A, C, P_1, Q, R, S) - riccati_step_with_cross(A, C, P_2, Q, R, S)

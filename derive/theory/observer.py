@@ -80,14 +80,18 @@ def _plant(t: Theory) -> None:
 
 def _noise(t: Theory) -> None:
     s = t.symbols
-    d, r, e, xi, Phi = s["d"], s["r"], s["e"], s["xi"], t.matrix("Phi", "n", "n", Glyph("Φ"), constant=False)
+    d, r, e, xi, Phi = s["d"], s["r"], s["e"], s["xi"], t.matrix(
+        "Phi", "n", "n", Glyph("Φ"), constant=False, parameter=False
+    )
     for a, b in (("d", "d"), ("d", "r"), ("r", "d"), ("r", "r")):
         R = t.matrix(f"R_{a}{b}", a, b, Glyph("R", sub=a + b), constant=False, meaning=f"correlation of {a} and {b}")
         S = t.matrix(f"S_{a}{b}", a, b, Glyph("S", sub=a + b), symmetric=a == b, meaning="intensity")
         t.define(f"R_{a}{b}", Expect(s[a].at("t") * s[b].at("τ").T), R.at("t", "τ"))
         t.assume(f"white {a}{b}", R.at("t", "τ"), "=", S * Delta("t", "τ"), "d and r are jointly white, of mean zero")
     t.assume("S_rd", t.symbols["S_rd"], "=", t.symbols["S_dr"].T)
-    R_xi = t.matrix("R_xixi", "n", "n", Glyph("R", sub="ξξ"), constant=False, meaning="correlation of xi")
+    R_xi = t.matrix(
+        "R_xixi", "n", "n", Glyph("R", sub="ξξ"), constant=False, parameter=False, meaning="correlation of xi"
+    )
     t.define("R_xixi definition", Expect(xi.at("t") * xi.at("τ").T), R_xi.at("t", "τ"))
     for a in (d, r):
         t.assume(
@@ -104,7 +108,14 @@ def _noise(t: Theory) -> None:
     S_dd, S_dr, S_rd, S_rr = (t.symbols[k] for k in ("S_dd", "S_dr", "S_rd", "S_rr"))
     t.define("sigma2", sigma, B_ed * S_dd * B_ed.T + B_ed * S_dr * B_er.T + B_er * S_rd * B_ed.T + B_er * S_rr * B_er.T)
     P_e = t.varying(
-        "P_e", "n", "n", Glyph("P", sub="e"), symmetric=True, meaning="error covariance for any gain", unit="[state]^2"
+        "P_e",
+        "n",
+        "n",
+        Glyph("P", sub="e"),
+        symmetric=True,
+        parameter=False,
+        meaning="error covariance for any gain",
+        unit="[state]^2",
     )
     t.define("P_e", Expect(e * e.T), P_e)
     t.define("Phi", Dot(Phi.at("t", "t0")), s["A_e"] * Phi.at("t", "t0"), "transition matrix of the error dynamics")
@@ -467,8 +478,8 @@ def _derive_gain(b: Builder) -> None:
     b.heading("The same from the trace")
     b.state(
         "gradient",
-        Equation(Gradient(Trace(closed_form(s, L, P_e)), L), "=", 2 * (L * R_e - P_e * C.T - N)),
-        "d tr f = tr(G' dL), at a fixed covariance",
+        Equation(Gradient(Trace(closed_form(s, L, P)), L), "=", 2 * (L * R_e - P * C.T - N)),
+        "d tr f = tr(G' dL), at a given covariance",
         ["R_e", "N", "S_rd"],
         rule="gradient",
         lemma=False,

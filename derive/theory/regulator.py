@@ -148,7 +148,7 @@ def derive_discrete(b: Builder) -> None:
         Equation(weight(B, S_k, R), "≻", Zero("", "")),
         "a congruence plus a positive matrix",
         [SquareOf(B.T, "S_k >= 0"), SquareOf(eye, "R > 0")],
-        strict=(1, eye),
+        witness=eye,
     )
     b.say("has an inverse. With the gain and the matrix")
     b.given("optimal gain", "cost to go")
@@ -195,7 +195,7 @@ def _derive_steady(b: Builder) -> None:
         Equation(weight(B, S, R), "≻", Zero("", "")),
         "as before",
         [SquareOf(B.T, "S >= 0"), SquareOf(eye, "R > 0")],
-        strict=(1, eye),
+        witness=eye,
     )
     b.say("and the limit is a fixed point of the step, with the gain that belongs to it:")
     b.given("steady cost to go", "steady gain")
