@@ -30,13 +30,16 @@ class OneLineErrors(click.Group):
         sys.exit(code if isinstance(code, int) else 0)
 
 
-@click.group(cls=OneLineErrors, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=OneLineErrors, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="lmi")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Convex programs for optimal estimation.
 
     Exit codes: 0 confirmed and none disagrees, 1 a route disagrees, 2 bad input or usage, 3 nothing could be confirmed.
     """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 @cli.command()

@@ -210,11 +210,10 @@ class _Reference:
         return None if answer.output is None else abs(answer.output - riccati.output) / self.output_size
 
     def residual(self, answer: Answer) -> float | None:
-        """Return the relative error that an answer admits; next to a boundary mode it is believed only when small."""
+        """Return the relative error that an answer admits."""
         if answer.P is None and answer.output is None:
             return None
-        error = answer.error / (self.output_size if answer.P is None else self.cost_size)
-        return error if error <= TRUSTED or not self.answer.boundary_modes else np.inf
+        return answer.error / (self.output_size if answer.P is None else self.cost_size)
 
     def error(self, answer: Answer) -> float:
         """Return the relative error of Riccati's result with which an answer is compared."""

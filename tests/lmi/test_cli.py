@@ -129,7 +129,7 @@ def test_table_fits_80_columns_whatever_the_numbers(weight, write):
 
 
 def test_version_help_and_module_run_as_programs():
-    for args in (["--version"], ["--help"], ["validate", "--help"]):
+    for args in ([], ["--version"], ["--help"], ["validate", "--help"]):
         result = subprocess.run([sys.executable, "-m", "lmi", *args], check=True, capture_output=True, text=True)
         assert "lmi" in result.stdout
         assert result.stderr == ""

@@ -7,6 +7,7 @@ import pytest
 
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
+from lmi import residual
 from lmi.covariance import covariance_error, solve_covariance
 from lmi.programs.h2 import factor, h2
 from lmi.programs.optimal_covariance import optimal_covariance, riccati_inequality
@@ -75,10 +76,34 @@ def test_a_feasible_covariance_is_below_and_that_of_any_gain_above(time, random_
 
 @pytest.mark.parametrize("build", PROGRAMS)
 @pytest.mark.parametrize("time", TIMES)
-def test_units_change_nothing_but_the_units(build, time, random_plant):
+def test_program_without_scaling_has_the_gain_of_the_riccati_equation(build, time, random_plant):
+    plant = random_plant(time, 3)
+    program = build(plant)
+    assert solve_program(program).status is Status.SOLVED
+    P, gain = program.answer()
+    riccati = solve_riccati(plant)
+    assert np.linalg.norm(P - riccati.P) < 1e-6 * np.linalg.norm(riccati.P)
+    assert np.linalg.norm(gain - riccati.gain) < 1e-3 * np.linalg.norm(riccati.gain)
+
+
+@pytest.mark.parametrize("build", PROGRAMS)
+@pytest.mark.parametrize("time", TIMES)
+def test_hardly_observed_unstable_states_have_their_large_covariance(build, time):
+    A = np.array([[0.6, 1.0, 0.0], [0.0, 0.3, 1.0], [0.0, 0.0, -0.3]]) + (np.eye(3) if time == "discrete" else 0.0)
+    plant = plant_from_mapping({"time": time, "A": A, "C": [[1e-3, 1, 1]], "W": np.eye(3), "V": 1.0})
+    P = solve_riccati(plant).P
+    assert np.linalg.cond(P) > 1e4
+    solution = solve_covariance(plant, build)
+    assert np.linalg.norm(solution.P - P) < 1e-8 * np.linalg.norm(P)
+
+
+@pytest.mark.parametrize("rate", [1e-15, 1.0, 1e12])
+@pytest.mark.parametrize("build", PROGRAMS)
+@pytest.mark.parametrize("time", TIMES)
+def test_units_change_nothing_but_the_units(build, time, rate, random_plant):
     plant = random_plant(time, 4)
     states, outputs = 2.0 ** np.array([20.0, -13.0, 7.0, 0.0]), np.array([1e-5, 3e4])
-    rate = 1e6 if time == "continuous" else 1.0
+    rate = rate if time == "continuous" else 1.0
     other = replace(
         plant,
         A=rate * states[:, None] * plant.A / states,
@@ -124,6 +149,15 @@ def test_perturbed_covariance_is_flagged_by_its_residuals(time, random_plant):
     error = covariance_error(plant, P + D)
     assert error is not None
     np.testing.assert_allclose(error, -D, atol=1e-2 * np.linalg.norm(D))
+
+
+def test_newton_steps_that_hardly_shrink_confirm_nothing(random_plant, monkeypatch):
+    P = np.eye(3)
+    for ratio, missing in ((0.5, 2.0), (0.9, 10.0), (0.99, None)):
+        steps = iter((2 * P, (2 + ratio) * P))
+        monkeypatch.setattr(residual, "gain_covariance", lambda plant, L, steps=steps: next(steps))
+        error = newton_error(random_plant("continuous", 3), P)
+        assert error is None if missing is None else np.allclose(error, missing * P)
 
 
 def test_covariance_with_an_unstable_gain_has_no_error_estimate():

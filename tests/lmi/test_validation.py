@@ -158,6 +158,13 @@ def test_a_wrong_covariance_that_admits_its_error_is_neither(monkeypatch):
     assert validation.route("nlp").status.startswith("inaccurate: its own numbers admit a relative error of")
 
 
+def test_a_right_covariance_that_admits_a_large_error_confirms_nothing(monkeypatch):
+    run_only(monkeypatch, nlp=lambda plant: replace(ROUTES[0].run(plant), error=0.1))
+    validation = validate(example_plant())
+    assert validation.route("nlp").relative_difference == 0.0
+    assert validation.verdict is Verdict.UNCONFIRMED
+
+
 def test_an_error_that_does_not_explain_the_difference_is_a_disagreement(monkeypatch):
     run_only(monkeypatch, integral=lambda plant: Answer("solved", output=4.0, error=1e-5))
     assert validate(example_plant()).verdict is Verdict.DISAGREE
