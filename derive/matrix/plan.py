@@ -20,7 +20,7 @@ from derive.matrix.instance import Instance, base, unknowns
 from derive.matrix.solve import Rule
 from derive.rules import Fact
 
-__all__ = ["Plan", "make_plan"]
+__all__ = ["Plan", "make_plans"]
 
 PROBES = 3  # random instances that are tried for one that exists
 PROBE_SIZE = 2
@@ -30,8 +30,7 @@ PROBE_SIZE = 2
 class Plan:
     """Free letters and scalars in order, the rules for the others, and what is tested in the end.
 
-    ``twins`` names for a free letter that the claim does not mention the letter whose value it tries first (P for P_1);
-    ``shown`` are the letters that the claim depends on.
+    ``shown`` are the letters that the claim depends on, without twins.
     """
 
     free: tuple[str, ...]
@@ -40,49 +39,62 @@ class Plan:
     relations: Mapping[str, Poly]
     central: Mapping[str, Poly]
     facts: Mapping[str, Fact]
-    twins: Mapping[str, str]
     shown: frozenset[str]
 
 
-def make_plan(problem: Hypotheses, claim: Iterable[Poly]) -> Plan | None:
-    """Return how to build instances of the hypotheses that bear on a claim; None if an integral is among them."""
+def make_plans(problem: Hypotheses, claim: Iterable[Poly]) -> list[Plan]:
+    """Return ways to build instances of the hypotheses that bear on a claim; none if an integral is among them.
+
+    The first lets free letters that the claim does not mention equal one of their kind, P_1 = P; the last does not.
+    """
     polys = list(claim)
     wanted = set[str]().union(*map(unknowns, polys))
     bears = bearing(problem, wanted)
     scalars = bears.scalars() | {s for p in polys for m, _ in p.terms for s in m}
     if any(s[0] == "∫" for s in scalars):
-        return None
+        return []
     scalars = {s for s in scalars if s[0] != "δ"}
     rules = Chooser(problem, bears, scalars).choose()
+    twins = _twins(problem, bears.letters, wanted, rules)
+    shown = frozenset(depends(wanted, rules)) - {rule.target for rule in twins}
+    return [_plan(problem, bears, scalars, shown, r) for r in ([rules + twins, rules] if twins else [rules])]
+
+
+def _plan(problem: Hypotheses, bears: Bearing, scalars: set[str], shown: frozenset[str], rules: list[Rule]) -> Plan:
     targets = {rule.target for rule in rules}
-    order = {name: i for i, name in enumerate(problem.alphabet.letters)}
-    free = sorted(bears.letters - targets, key=lambda a: (order.get(parts(a)[0], 0), a))
     return Plan(
-        tuple(free),
+        tuple(_by_declaration(problem, bears.letters - targets)),
         tuple(sorted(scalars - targets)),
         ordered(rules),
         bears.relations,
         bears.central,
         bears.facts,
-        _twins(free, wanted, problem),
-        frozenset(depends(wanted, rules)),
+        shown,
     )
 
 
-def _twins(free: list[str], wanted: set[str], problem: Hypotheses) -> dict[str, str]:
-    """Pair free letters outside the claim with an earlier one of the same type and the same first character."""
-    types = {a: problem.alphabet.letters[parts(a)[0]] for a in free}
-    twins: dict[str, str] = {}
-    for i, a in enumerate(free):
-        like = (b for b in free[:i] if b[0] == a[0] and _type(types[b]) == _type(types[a]))
-        twin = next(like, None) if a not in wanted else None
+def _twins(problem: Hypotheses, letters: Iterable[str], wanted: set[str], rules: list[Rule]) -> list[Rule]:
+    """Set free letters outside the claim to the first letter of the same type whose name begins with the same sign."""
+    found: list[Rule] = []
+    known = _by_declaration(problem, letters)
+    for a in known:
+        if a in wanted or a in {rule.target for rule in rules + found}:
+            continue
+        like = (b for b in known if b != a and b[0] == a[0] and _type(problem, b) == _type(problem, a))
+        twin = next((b for b in like if a not in depends({b}, rules + found)), None)
         if twin is not None:
-            twins[a] = twin
-    return twins
+            found.append(Rule(a, "matrix", Poly({((), (a,)): 1, ((), (twin,)): -1}, *problem.alphabet.shape(a))))
+    return found
 
 
-def _type(letter) -> tuple[str, str, bool]:
-    return letter.rows, letter.cols, letter.symmetric
+def _type(problem: Hypotheses, letter: str) -> tuple[str, str, bool]:
+    found = problem.alphabet.letters[parts(letter)[0]]
+    return found.rows, found.cols, found.symmetric
+
+
+def _by_declaration(problem: Hypotheses, letters: Iterable[str]) -> list[str]:
+    order = {name: i for i, name in enumerate(problem.alphabet.letters)}
+    return sorted(letters, key=lambda a: (order.get(parts(a)[0], 0), a))
 
 
 @dataclass
@@ -132,9 +144,8 @@ class Chooser:
 
     def _rule(self, poly: Poly, candidates: Iterable[str], rules: list[Rule]) -> Rule | None:
         """Solve a relation for a candidate, the one declared last, that no other letter of the relation depends on."""
-        order = {name: i for i, name in enumerate(self.problem.alphabet.letters)}
         taken = {rule.target for rule in rules}
-        for target in sorted(candidates, key=lambda a: (order.get(parts(a)[0], 0), a), reverse=True):
+        for target in reversed(_by_declaration(self.problem, candidates)):
             if target not in taken and target not in depends(unknowns(poly) - {target}, rules):
                 return Rule(target, "matrix", poly)
         return None

@@ -6,19 +6,19 @@ entry, and checked once more by code that shares nothing with the search.
 
 from __future__ import annotations
 
-import random
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 from typing import TYPE_CHECKING
 
 from derive.claim import Counterexample, Entries
 from derive.kernel import Poly
+from derive.matrix.candidates import matrix_instances, scalar_instances
 from derive.matrix.hypotheses import Hypotheses, at_start
-from derive.matrix.instance import Instance, one
-from derive.matrix.plan import Plan, make_plan
+from derive.matrix.instance import Instance
+from derive.matrix.plan import Plan, make_plans
 from derive.matrix.recheck import confirm
 
 if TYPE_CHECKING:
@@ -26,11 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["refute"]
 
-LADDER = (1, 2, 0, -1, 3, -2)  # values of a scalar letter, the plainest first; a one hides less than a zero
-POINTS = (2, 3, 5, Fraction(1, 2), -1)  # values of a central scalar
-ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried
-TRIES = 4000  # attempts at scalars
-EQUAL = 0.8  # how often a letter outside the claim takes the value of its twin
+ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried; tries of a size
+TRIES = 2000  # attempts at scalars
 
 
 def refute(
@@ -60,14 +57,13 @@ def refute(
     """
     if _has_delta(lhs) or _has_delta(rhs):
         return None
-    plan = make_plan(problem, (lhs, rhs))
-    if plan is None:
-        problem, lhs, rhs = problem.at_start(), at_start(lhs), at_start(rhs)
-        plan = make_plan(problem, (lhs, rhs))
-        assert plan is not None, "no integral is left at the start"
-    attempt = Attempt(problem, plan, lhs, rhs, relation, trace)
     deadline = time.monotonic() + seconds
-    for instance in _candidates(attempt):
+    plans = make_plans(problem, (lhs, rhs))
+    if not plans:
+        problem, lhs, rhs = problem.at_start(), at_start(lhs), at_start(rhs)
+        plans = make_plans(problem, (lhs, rhs))
+    attempts = [Attempt(problem, plan, lhs, rhs, relation, trace) for plan in plans]
+    for attempt, instance in _candidates(attempts):
         if time.monotonic() > deadline:
             return None
         if attempt.fails(instance):
@@ -75,6 +71,21 @@ def refute(
             if confirm(found, lhs, rhs, problem):
                 return found
     return None
+
+
+def _candidates(attempts: Sequence[Attempt]) -> Iterator[tuple[Attempt, Instance]]:
+    """Iterate over instances to try: scalars by the first plan that has some, then matrices by all plans in turn."""
+    for attempt in attempts:
+        scalars = scalar_instances(attempt.problem, attempt.plan, attempt.sides)
+        for instance in islice(scalars, TRIES):
+            yield attempt, instance
+            if attempt.survived >= ENOUGH:
+                break
+        if attempt.survived:
+            break
+    series = [matrix_instances(a.problem, a.plan, a.sides, repeat=ENOUGH) for a in attempts]
+    for round_ in zip(*series, strict=False):
+        yield from zip(attempts, round_, strict=True)
 
 
 def _has_delta(poly: Poly) -> bool:
@@ -143,109 +154,7 @@ class Attempt:
         return self.lhs, self.rhs
 
 
-# ------------------------------------------------------------------------------------------------ candidates
-def _candidates(attempt: Attempt) -> Iterator[Instance]:
-    """Iterate over choices of the free letters: scalars by increasing cost, then matrices, size by size."""
-    dimensions = _dimensions(attempt)
-    yield from _scalars(attempt, dict.fromkeys(dimensions, 1))
-    generator = random.Random(0)
-    for largest in (2, 2, 3, 3, 4):
-        sizes = product(range(1, largest + 1), repeat=len(dimensions))
-        for size in sorted((s for s in sizes if max(s, default=1) > 1), key=sum):
-            attempt.survived = 0
-            for _ in range(ENOUGH):
-                yield _random(attempt, dict(zip(dimensions, size, strict=True)), generator)
-    while dimensions:
-        attempt.survived = 0
-        yield _random(attempt, {d: generator.randint(1, 4) for d in dimensions}, generator)
-
-
-def _dimensions(attempt: Attempt) -> list[str]:
-    letters = attempt.problem.alphabet
-    used = [*attempt.plan.free, *(rule.target for rule in attempt.plan.rules if rule.kind != "scalar")]
-    names = [d for a in used for d in letters.shape(a)] + [d for p in attempt.sides for d in (p.rows, p.cols)]
-    return [d for d in dict.fromkeys(names) if d and not d.isdigit()]
-
-
-def _scalars(attempt: Attempt, sizes: dict[str, int]) -> Iterator[Instance]:
-    """Iterate over 1 x 1 letters in the order of their total cost, the sum of their places in the ladder."""
-    from flint import fmpq, fmpq_mat
-
-    plan, ladders = attempt.plan, _ladders(attempt)
-    tried = 0
-    for cost in range(sum(len(ladder) - 1 for ladder in ladders) + 1):
-        for places in _spread(cost, [len(ladder) for ladder in ladders]):
-            values: dict[str, fmpq] = {}
-            for name, ladder, place in zip((*plan.free, *plan.free_scalars), ladders, places, strict=True):
-                value = ladder[place]
-                values[name] = values[value] if isinstance(value, str) else fmpq(value.numerator, value.denominator)
-            matrices = {name: fmpq_mat(1, 1, [values[name]]) for name in plan.free}
-            points = {name: values[name] for name in plan.free_scalars}
-            yield Instance(attempt.problem.alphabet, sizes, matrices, points)
-            tried += 1
-            if tried >= TRIES or attempt.survived >= ENOUGH:
-                return
-
-
-def _ladders(attempt: Attempt) -> list[Sequence[int | Fraction | str]]:
-    """Return the values to be tried for each free letter and scalar; the name of a letter stands for its value."""
-    plan, ladders = attempt.plan, list[Sequence[int | Fraction | str]]()
-    for name in plan.free:
-        kind = _sign(attempt, name)
-        values = [v for v in LADDER if not kind or v > 0 or (v == 0 and kind == "psd")]
-        ladders.append([plan.twins[name], *values] if name in plan.twins else values)
-    return ladders + [POINTS] * len(plan.free_scalars)
-
-
-def _sign(attempt: Attempt, letter: str) -> str:
-    """Return what is known of a letter itself: 'psd', 'pd' or nothing."""
-    own = {f.matrix[0][0]: f.kind for f in attempt.plan.facts.values() if len(f.matrix) == 1}
-    kind = own.get(Poly({((), (letter,)): 1}, *attempt.problem.alphabet.shape(letter)), "")
-    return kind if kind in ("psd", "pd") else ""
-
-
-def _spread(total: int, lengths: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Iterate over tuples of places with the given sum, each below its length; the last ones vary slowest."""
-    if not lengths:
-        if total == 0:
-            yield ()
-        return
-    for place in range(min(total, lengths[0] - 1), -1, -1):
-        for rest in _spread(total - place, lengths[1:]):
-            yield (place, *rest)
-
-
-def _random(attempt: Attempt, sizes: dict[str, int], generator: random.Random) -> Instance:
-    """Draw small integer matrices; a letter that must be positive is a square, a twin mostly an equal."""
-    from flint import fmpq
-
-    instance, plan = Instance(attempt.problem.alphabet, sizes), attempt.plan
-    for name in plan.free:
-        if name in plan.twins and generator.random() < EQUAL:
-            instance.values[name] = instance.values[plan.twins[name]]
-            continue
-        rows, cols = instance.shape(name)
-        value, kind = _integers(rows, cols, generator), _sign(attempt, name)
-        if kind:
-            value = value * value.transpose()
-            if kind == "pd" and value.det() == 0:
-                value += one(rows)
-        elif attempt.problem.alphabet.letters[name.partition("@")[0]].symmetric:
-            value += value.transpose()
-        instance.values[name] = value
-    for name in plan.free_scalars:
-        point = Fraction(generator.choice(POINTS))
-        instance.scalars[name] = fmpq(point.numerator, point.denominator)
-    return instance
-
-
-def _integers(rows: int, cols: int, generator: random.Random) -> fmpq_mat:
-    from flint import fmpq_mat
-
-    high = generator.choice((1, 1, 2))
-    return fmpq_mat(rows, cols, [generator.randint(-high, high) for _ in range(rows * cols)])
-
-
+# ------------------------------------------------------------------------------------------------ plain values
 def _simplified(attempt: Attempt, instance: Instance, deadline: float) -> Instance:
     """Replace entries of the free letters by 0, 1 or -1 while the claim still fails."""
     for name in attempt.plan.free:
