@@ -30,7 +30,7 @@ COORDINATE_FLOOR = 1e-6
 """Variance, relative to the mean one, that the coordinates take a state to have at least."""
 
 NOISE_FLOOR = 1e-9
-"""Process noise, relative to the covariance, that is added so that ln det P has a minimum even where P is singular.
+"""Process noise that is added so that ln det P has a minimum even where P is singular, relative to what keeps up P.
 
 It shifts the gain in proportion, and the covariance of that gain by the square of that."""
 
@@ -147,7 +147,8 @@ def _optimal(form: NormalForm) -> tuple[Matrix, int]:
             break
         T = np.linalg.cholesky(P + COORDINATE_FLOOR * np.trace(P) / len(P) * np.eye(len(P)))
         R = np.linalg.inv(T)
-        found, taken = _solve(R @ F @ T, C @ T, R @ W @ R.T + NOISE_FLOOR * np.eye(len(P)), R @ K, form.time)
+        floor = NOISE_FLOOR * _decay(F - K @ C, form.time)
+        found, taken = _solve(R @ F @ T, C @ T, R @ W @ R.T + floor * np.eye(len(P)), R @ K, form.time)
         better, iterations = _covariance(form, T @ found), iterations + taken
         decrease = 1 - np.trace(R @ better @ R.T) / np.trace(R @ P @ R.T)
         if decrease > 0:
@@ -155,6 +156,12 @@ def _optimal(form: NormalForm) -> tuple[Matrix, int]:
         if not decrease > SETTLED:
             break
     return K, iterations
+
+
+def _decay(loop: Matrix, time: Time) -> float:
+    """Return the noise that keeps up unit variance of the slowest mode: -2 Re lambda, discrete 1 - |lambda|^2."""
+    modes = np.linalg.eigvals(loop)
+    return float(np.min(-2 * np.real(modes) if time == "continuous" else 1 - np.abs(modes) ** 2))
 
 
 def _solve(F: Matrix, C: Matrix, W: Matrix, K: Matrix, time: Time) -> tuple[Matrix, int]:

@@ -184,7 +184,7 @@ class _Spectrum:
             gap = 1j * (offset[:, None] + (centre[:, None] - self.modes.imag)) - self.modes.real
             return 1 / gap
         turn = np.exp(1j * centre)[:, None]
-        gap = np.expm1(1j * offset)[:, None] + (1 - self.modes / turn)
+        gap = np.exp(1j * offset)[:, None] - self.modes / turn
         return 1 / (turn * gap)
 
     def _rows(self, poles: NDArray[Any]) -> NDArray[Any]:

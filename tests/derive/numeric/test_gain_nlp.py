@@ -12,7 +12,7 @@ from derive.numeric.lyapunov import error_covariance
 from derive.numeric.modes import distance_to_stability
 from derive.numeric.plant import Plant, example_plant
 from derive.numeric.riccati import solve_riccati
-from tests.derive.numeric.plants import STABILISING, STRONG, continuous, random_plant
+from tests.derive.numeric.plants import NOTHING, STABILISING, STRONG, continuous, random_plant
 
 TIMES = ["continuous", "discrete"]
 
@@ -97,6 +97,16 @@ def test_a_plant_that_no_gain_stabilises_fails_without_a_crash():
     one = np.eye(1)
     hidden = Plant(time="continuous", A=one, C=0 * one, W=one, V=one, N=0 * one, M=one)
     assert optimise_gain(hidden).status == "failed"
+
+
+@pytest.mark.parametrize("rate", [1e-6, 1e6])
+def test_the_unit_of_time_does_not_matter(rate):
+    """x' = r A x + w with W r and V/r is the same plant under another clock; without noise, P is singular besides."""
+    for plant in (random_plant("continuous", 4, 2, seed=3), continuous(A=np.diag([1, -1]), C=[[1, 1]], W=NOTHING, V=1)):
+        same = continuous(A=rate * plant.A, C=plant.C, W=rate * plant.W, V=plant.V / rate, N=plant.N)
+        result = optimise_gain(same)
+        assert result.status == "optimal"
+        np.testing.assert_allclose(result.P, optimise_gain(plant).P, rtol=1e-9, atol=1e-11)
 
 
 def test_units_do_not_matter():

@@ -328,6 +328,14 @@ def test_detectability_does_not_depend_on_units():
             plant_from_mapping({**hidden, "W": np.eye(2), "V": 1})
 
 
+@pytest.mark.parametrize("rate", [1e-15, 1e15])
+def test_detectability_does_not_depend_on_the_unit_of_time(rate):
+    data = {"time": "continuous", "C": [[1, 0]], "W": np.eye(2), "V": 1}
+    assert plant_from_mapping({**data, "A": rate * np.array([[0.1, 1.0], [0.0, 0.2]])}).n == 2
+    with pytest.raises(InputError, match="is unobservable"):
+        plant_from_mapping({**data, "A": rate * np.array([[0.1, 0.0], [0.0, 0.2]])})
+
+
 def test_rounding_is_not_taken_for_a_fault():
     rng = np.random.default_rng(0)
     G = rng.standard_normal((6, 2))

@@ -158,6 +158,22 @@ def test_a_mode_near_the_boundary_is_not_on_it():
     np.testing.assert_allclose(np.trace(excited.P), 2e-4, rtol=1e-4)
 
 
+def test_faint_noise_is_noise():
+    """An integrator driven with 1e-20 of the noise of its neighbour has P = sqrt(W V) = 1e-10, not 0."""
+    solution = solve_riccati(continuous(A=np.diag([0, -1]), C=np.eye(2), W=np.diag([1e-20, 1]), V=np.eye(2)))
+    assert solution.status == "stabilising"
+    np.testing.assert_allclose(np.diag(solution.P), [1e-10, np.sqrt(2) - 1], rtol=1e-13)
+
+
+def test_a_long_chain_of_integrators():
+    """CAREX example 4.1, dual: x_1n = sqrt(q r) = 1, and others reach 5e8 at n = 21."""
+    W = np.zeros((21, 21))
+    W[0, 0] = 1.0
+    solution = solve_riccati(continuous(A=np.eye(21, k=-1), C=np.eye(21)[-1:], W=W, V=1))
+    assert solution.status == "stabilising"
+    np.testing.assert_allclose(solution.P[0, -1], 1.0, rtol=1e-11)
+
+
 def test_stable_modes_without_noise_are_no_boundary():
     split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0)
     assert (len(split.modes), split.kept.shape, split.removed.shape) == (0, (2, 2), (2, 0))

@@ -158,3 +158,4 @@ def test_quadrature_of_rounding_noise_ends():
     found = integrate(lambda c, u: 1 + 1e-6 * rng.standard_normal(u.shape), np.array([(0.0, 0.0, 1.0)]), 1e-13)
     assert found.value == pytest.approx(1, abs=1e-6)
     assert found.error > 1e-8
+    assert found.evaluations < 10**6
