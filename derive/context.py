@@ -84,6 +84,7 @@ class Theory:
     constant: set[str] = field(default_factory=set[str])
     parameters: set[str] = field(default_factory=set[str])
     nonnegative: set[str] = field(default_factory=set[str])
+    complex: set[str] = field(default_factory=set[str])
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
 
     def matrix(
@@ -154,10 +155,9 @@ class Theory:
         return symbol
 
     def scalar(self, name: str, glyph: Glyph | None = None, *, nonnegative: bool = False, meaning: str = "") -> Symbol:
-        """Declare a central scalar."""
+        """Declare a central scalar, which may be complex unless it is said to be >= 0."""
         self.symbols[name] = symbol = Symbol(name, glyph=glyph or Glyph(name), scalar=True, meaning=meaning)
-        if nonnegative:
-            self.nonnegative.add(name)
+        (self.nonnegative if nonnegative else self.complex).add(name)
         return symbol
 
     def direction(self, symbol: Symbol) -> Symbol:
@@ -217,6 +217,7 @@ class Theory:
             parameters=frozenset(self.parameters),
             random=frozenset(self.random),
             uncentred=frozenset(self.uncentred),
+            complex=frozenset(self.complex),
             facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
         )
         reading = Reading(context)
@@ -291,7 +292,7 @@ def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
 def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
     """Extend a reading by the two relations of an inverse, if its reason holds.
 
-    M X = I, X M = I
+    M X = I, X M = I;  the inverse of a matrix that may be complex may be complex
 
     Raises:
         MissingInverse: the reason is not proved yet.
@@ -306,9 +307,9 @@ def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
         f"{item.name}.right": poly * inverse - identity(poly.rows),
         f"{item.name}.left": inverse * poly - identity(poly.cols),
     }
-    return replace(
-        reading, context=replace(context, relations=relations), inverses={**reading.inverses, poly: item.name}
-    )
+    unreal = context.complex if context.is_real(poly) else context.complex | {item.name}
+    context = replace(context, relations=relations, complex=unreal)
+    return replace(reading, context=context, inverses={**reading.inverses, poly: item.name})
 
 
 def _check_reason(item: DeclaredInverse, poly: Poly, reading: Reading) -> None:

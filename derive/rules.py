@@ -77,8 +77,8 @@ class Context:
     """What may be used.
 
     Letters, relations (each = 0), facts, scalars >= 0, time derivatives, letters constant in time, parameters (letters
-    that no choice of a gain changes), moments E[a b'], random letters of mean zero, and signals with another mean,
-    whose expectation has no rule.
+    that no choice of a gain changes), moments E[a b'], random letters of mean zero, signals with another mean, whose
+    expectation has no rule, and the letters and scalars that may be complex, of which no square is known to be >= 0.
     """
 
     alphabet: Alphabet
@@ -91,6 +91,11 @@ class Context:
     moments: Mapping[tuple[str, str], Poly] = field(default_factory=dict[tuple[str, str], Poly])
     random: frozenset[str] = frozenset()
     uncentred: frozenset[str] = frozenset()
+    complex: frozenset[str] = frozenset()
+
+    def is_real(self, poly: Poly) -> bool:
+        """Return whether no letter and no scalar of a polynomial may be complex."""
+        return not any(self.complex.intersection((*m, *(parts(a)[0] for a in w))) for m, w in poly.terms)
 
     def fact(self, name: str, *kinds: str) -> Fact:
         """Return a fact of one of the given kinds, or raise Rejected."""
@@ -108,6 +113,8 @@ def replay_positivity(proof: Positivity, claim: Grid, context: Context) -> str:
     for s in proof.squares:
         if s.coefficient < 0 or not context.nonnegative.issuperset(s.scalars):
             raise Rejected(f"the coefficient of {s.fact} may be negative")
+        if not all(context.is_real(f) for row in s.factor for f in row):
+            raise Rejected(f"the factor of {s.fact} may be complex; its square need not be positive")
         core = context.fact(s.fact, "psd", "pd").matrix
         _check_blocks(core)
         if len(s.factor) != len(claim) or any(len(row) != len(core) for row in s.factor):
@@ -156,6 +163,8 @@ def replay_comparison(proof: Comparison, claim: Poly, context: Context) -> str:
     forcing = context.fact(proof.forcing, "psd", "pd").matrix
     if len(forcing) != 1 or len(forcing[0]) != 1:
         raise Rejected(f"the fact {proof.forcing} has several blocks")
+    if not context.is_real(m):
+        raise Rejected("the matrix of the comparison may be complex")
     f = forcing[0][0]
     equation = m * d * flip(m) - d + f if proof.kind == "stein" else m * d + d * flip(m) + f
     if proof.kind == "transient":
@@ -291,13 +300,19 @@ def sift(poly: Poly) -> Poly:
             if "∫" + two not in m:
                 one, two = two, one
             if "∫" + two in m and ("∫" + one in m or one == "t") and one != two:
-                if m.count(delta) > 1:
-                    raise Rejected(f"the square of {delta} has no meaning")
+                shared = {v for v in (one, two) if "∫" + v in m}
+                if any(shared.intersection(times_of((s,), ())) for s in _without(m, delta) if s.startswith("δ")):
+                    raise Rejected(f"no product of {delta} with a delta of the same variable has a meaning")
                 inner = tuple(s for s in m if s not in ("∫" + two, delta))
                 term = sift(at_time(Poly({(inner, w): c / (2 if one == "t" else 1)}, poly.rows, poly.cols), two, one))
                 break
         total = total + term
     return total
+
+
+def _without(scalars: Scalars, one: str) -> Scalars:
+    at = scalars.index(one)
+    return scalars[:at] + scalars[at + 1 :]
 
 
 def variation(poly: Poly, letter: str, change: str, context: Context) -> Poly:

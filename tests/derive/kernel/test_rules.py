@@ -141,6 +141,15 @@ def test_an_integral_of_squares():
         positive(Positivity(claim, (square_,), (((),),)), context=replace(CONTEXT, nonnegative=frozenset()))
 
 
+@pytest.mark.parametrize("complex_", ["A", "s"])
+def test_a_complex_factor_makes_no_square(complex_):
+    claim = ((poly("n", "n", (1, "A P A'", "s s")),),)
+    proof = Positivity(claim, (Square(Fraction(1), (), ((poly("n", "n", (1, "A", "s")),),), "P"),), (((),),))
+    assert positive(proof) == "psd"
+    with pytest.raises(Rejected, match="may be complex"):
+        positive(proof, context=replace(CONTEXT, complex=frozenset({complex_})))
+
+
 def test_blocks():
     column = (letter("A"),), (letter("C"),)
     claim = (
@@ -238,6 +247,8 @@ def test_a_changed_comparison_is_rejected(change, match):
 
 
 def test_comparison_needs_the_right_facts():
+    with pytest.raises(Rejected, match="may be complex"):
+        compare("lyapunov", comparison_context("lyapunov", complex=frozenset({"M"})))
     wrong = {**facts(Q="psd"), "M": Fact("schur", ((letter("M"),),))}
     with pytest.raises(Rejected, match="no fact M of kind hurwitz"):
         compare("lyapunov", comparison_context("lyapunov", facts=wrong))
@@ -421,8 +432,11 @@ def test_deltas_that_cannot_be_integrated_stay():
     for scalars in ("δ(t,τ)", "δ(τ,t)", "δ(τ,σ)", "∫τ δ(τ,σ)", "∫τ δ(t0,τ)", "∫τ δ(τ,τ)"):
         kept = poly("n", "n", (1, "Phi@t,τ", scalars))
         assert sift(kept) == kept
-    with pytest.raises(Rejected, match="square of δ"):
-        sift(poly("n", "n", (1, "A", "δ(t,τ) δ(t,τ) ∫τ")))
+    for scalars in ("δ(t,τ) δ(t,τ) ∫τ", "δ(t,τ) δ(t0,τ) ∫τ", "δ(t,τ) δ(τ,σ) ∫σ ∫τ"):
+        with pytest.raises(Rejected, match="has a meaning"):
+            sift(poly("n", "n", (1, "A", scalars)))
+    two = poly("n", "n", (1, "Phi@τ,σ", "δ(τ,t1) δ(σ,t2) ∫t1 ∫t2 ∫σ ∫τ"))
+    assert not any(s.startswith("δ") for m, _ in sift(two).terms for s in m)
 
 
 # ------------------------------------------------------------------------------------------------ maps and gradients
