@@ -206,6 +206,8 @@ class Reader:
             raise InputError(f"{shown(text)}: not a symbol of the theory {self.theory.key}")
         if not sign:
             return self.theory.symbols[name]
+        if self.theory.symbols[name].scalar or name in self.theory.constant:
+            raise InputError(f"{shown(text)}: {name} does not depend on time; leave out the arguments")
         for time in arguments.split(","):
             check_time(self.theory, time)
         return self.theory.symbols[name].at(*arguments.split(","))

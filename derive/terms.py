@@ -289,6 +289,8 @@ def lower(term: Term, reading: Reading) -> Grid:
     match term:
         case Symbol(scalar=True):
             raise Rejected(f"the scalar {term.name} stands alone where a matrix is expected")
+        case Dot(Symbol(name=name, args=args)) if args and "t" not in args:
+            raise Rejected(f"the derivative of {name} at ({','.join(args)}) is not that of a constant; write it at t")
         case Symbol():
             return ((Poly({((), (term.letter,)): 1}, *context.alphabet.shape(term.letter)),),)
         case Identity(size):
@@ -316,6 +318,7 @@ def lower(term: Term, reading: Reading) -> Grid:
         case Expect(body):
             return grid_map(lambda p: expect(p, context), lower(body, reading))
         case Integral(body, variable):
+            _check_time(variable, context)
             return grid_map(lambda p: sift(p.scale(1, ("∫" + variable,))), lower(body, reading))
         case Block(rows):
             return _lower_block(rows, reading)
@@ -327,15 +330,22 @@ def lower(term: Term, reading: Reading) -> Grid:
             raise Rejected(f"{type(term).__name__} has no meaning as a matrix here")
 
 
+def _check_time(variable: str, context: Context) -> None:
+    if variable in context.alphabet.scalars or variable in context.alphabet.letters:
+        raise Rejected(f"{variable} is a symbol, not a variable of time")
+
+
 def _lower_product(factors: tuple[Term, ...], reading: Reading) -> Grid:
     number, scalars, matrices = Fraction(1), [], []
     for factor in factors:
         match factor:
             case Number(value):
                 number *= value
-            case Symbol(scalar=True):
+            case Symbol(scalar=True, args=()):
                 scalars.append(factor.name)
             case Delta(one, two):
+                _check_time(one, reading.context)
+                _check_time(two, reading.context)
                 scalars.append("δ({},{})".format(*sorted((one, two), key=lambda a: (a != "t", a))))
             case _:
                 matrices.append(lower(factor, reading))

@@ -17,7 +17,7 @@ from derive.errors import InputError
 from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term
 
 EXPANSION = 20_000  # products that one statement may expand to
-TIME = re.compile(r"[A-Za-zα-ω0-9_+-]{1,12}")
+TIME = re.compile(r"[A-Za-zα-ω][0-9]{0,3}")  # what prints as one variable
 
 
 def a_list(data: Any, name: str) -> list[Any]:
@@ -46,7 +46,7 @@ def shown(value: Any) -> str:
 
 def check_time(theory: Theory, text: str) -> None:
     """Check the name of a time."""
-    if not TIME.fullmatch(text):
+    if not TIME.fullmatch(text) or text in theory.symbols:
         raise InputError(f"{shown(text)}: expected a time such as t or τ")
 
 
