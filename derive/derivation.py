@@ -6,8 +6,8 @@ installed theory, checks the steps in order and lets a proved step serve as a le
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Literal
 
@@ -43,6 +43,12 @@ from derive.terms import (
 
 Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain"]
 Text = tuple["str | Term | Equation", ...]
+PARTS: Mapping[Rule, str] = {
+    "positivity": "positivity",
+    "comparison": "comparison",
+    "uniqueness": "uniqueness",
+    "chain": "links",
+}  # the part of a proof that a rule replays, where it is not the identities
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
 
@@ -149,6 +155,9 @@ def order_claim(statement: Equation, reading: Reading) -> Grid:
 def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     """Replay one step, or raise Rejected."""
     context, proof = reading.context, step.proof
+    wanted = PARTS.get(step.rule, "identities")
+    if any(getattr(proof, f.name) and f.name != wanted for f in fields(proof)):
+        raise Rejected(f"a proof by the rule {step.rule!r} has {wanted} and nothing else")
     if step.rule == "chain":
         _check_chain(step, earlier)
     elif step.rule in ("positivity", "comparison"):
@@ -203,17 +212,19 @@ class Outcome:
 def verify(theory: Theory, steps: Sequence[Step]) -> list[Outcome]:
     """Replay steps in order from the installed theory; a rejected step serves no later one."""
     reading, earlier, outcomes = theory.reading(), dict[str, Step](), list[Outcome]()
+    taken = set(theory.declared)
     for step in steps:
         try:
-            if step.name in earlier or step.name in theory.declared:
+            if step.name in taken:
                 raise Rejected(f"the name {step.name} is taken")
+            taken.add(step.name)
             check(step, reading, earlier)
-        except (Rejected, ValueError) as error:
+            reading = learn(reading, theory, step)
+        except (Rejected, ValueError, IndexError) as error:
             outcomes.append(Outcome(step.name, False, str(error)))
             continue
         earlier[step.name] = step
         outcomes.append(Outcome(step.name, True))
-        reading = learn(reading, theory, step)
     return outcomes
 
 
