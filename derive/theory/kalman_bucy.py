@@ -94,19 +94,11 @@ def _noise(t: Theory) -> None:
     t.assume("V > 0", V, "≻", text="every output is noisy")
     t.inverse("V^-1", V, "l", symmetric=True, because="V > 0")
     P_L = t.varying(
-        "P_L",
-        "m",
-        "m",
-        Glyph("P", sub="L"),
-        symmetric=True,
-        parameter=False,
-        meaning="error covariance for any gain",
+        "P_L", "m", "m", Glyph("P", sub="L"), symmetric=True, parameter=False, meaning="error covariance for any gain"
     )
     t.define("P_L", Expect(error * error.T), P_L)
     A_L = s["A"] - s["L"] * s["C"]
-    Phi = t.matrix(
-        "Phi", "m", "m", Glyph("Φ"), constant=False, parameter=False, meaning="transition matrix of A - L C"
-    )
+    Phi = t.matrix("Phi", "m", "m", Glyph("Φ"), constant=False, parameter=False, meaning="transition matrix of A - L C")
     for start in ("t0", "τ"):
         t.define(f"Phi(t,{start})", Dot(Phi.at("t", start)), A_L * Phi.at("t", start))
     t.define("Phi(t,t)", Phi.at("t", "t"), Identity("m"))

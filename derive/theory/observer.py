@@ -80,8 +80,12 @@ def _plant(t: Theory) -> None:
 
 def _noise(t: Theory) -> None:
     s = t.symbols
-    d, r, e, xi, Phi = s["d"], s["r"], s["e"], s["xi"], t.matrix(
-        "Phi", "n", "n", Glyph("Φ"), constant=False, parameter=False
+    d, r, e, xi, Phi = (
+        s["d"],
+        s["r"],
+        s["e"],
+        s["xi"],
+        t.matrix("Phi", "n", "n", Glyph("Φ"), constant=False, parameter=False),
     )
     for a, b in (("d", "d"), ("d", "r"), ("r", "d"), ("r", "r")):
         R = t.matrix(f"R_{a}{b}", a, b, Glyph("R", sub=a + b), constant=False, meaning=f"correlation of {a} and {b}")
