@@ -52,12 +52,14 @@ def validate(plant: str, form: str) -> int:
 
     PLANT is a file (.toml, .json, .npz, .mat) with time, A, C, W, V and optionally N, M, B, D_u.
     """
+    from rich.console import Console
+
     from derive.errors import InputError
     from lmi.validation import validate as run
 
     try:
-        with _Progress() as progress:
-            validation = run(plant, progress=progress)
+        with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
+            validation = run(plant, progress=status.update)
     except InputError as error:
         raise click.ClickException(str(error)) from None
     if form == "json":
@@ -69,30 +71,6 @@ def validate(plant: str, form: str) -> int:
 
         print_table(validation)
     return validation.verdict.exit_code
-
-
-class _Progress:
-    """Show on a terminal which route runs; show nothing when standard error is not one."""
-
-    def __init__(self) -> None:
-        self.status: Any = None
-
-    def __enter__(self) -> Any:
-        if sys.stderr.isatty():
-            from rich.console import Console
-
-            self.status = Console(stderr=True).status("plant")
-            self.status.start()
-        return self.show
-
-    def show(self, route: str) -> None:
-        """Name the route that starts now."""
-        if self.status is not None:
-            self.status.update(route)
-
-    def __exit__(self, *_: object) -> None:
-        if self.status is not None:
-            self.status.stop()
 
 
 def main() -> NoReturn:

@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 
 import lmi
+import lmi.routes as routes_module
 import lmi.validation as validation_module
 from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
+from lmi.covariance import solve_covariance
 from lmi.report import verdict_line
 from lmi.routes import ROUTES, Answer, cost_of, output_rounding
+from lmi.solve import Status
 from lmi.validation import AGREEMENT, Verdict, validate
 
 TIMES = ("continuous", "discrete")
@@ -162,6 +165,18 @@ def test_a_right_covariance_that_admits_a_large_error_confirms_nothing(monkeypat
     run_only(monkeypatch, nlp=lambda plant: replace(ROUTES[0].run(plant), error=0.1))
     validation = validate(example_plant())
     assert validation.route("nlp").relative_difference == 0.0
+    assert validation.verdict is Verdict.UNCONFIRMED
+
+
+def test_a_covariance_from_numbers_that_break_their_constraints_confirms_nothing(monkeypatch):
+    def solve(plant, build):
+        solution = solve_covariance(plant, build)
+        return replace(solution, outcome=replace(solution.outcome, status=Status.INACCURATE))
+
+    monkeypatch.setattr(routes_module, "solve_covariance", solve)
+    run_only(monkeypatch, lmi_dual=ROUTES[2].run)
+    validation = validate(example_plant())
+    assert validation.route("lmi-dual").status == Status.INACCURATE.value
     assert validation.verdict is Verdict.UNCONFIRMED
 
 
