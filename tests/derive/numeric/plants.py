@@ -44,8 +44,8 @@ STRONG = {
         [0],
     ),
     "integrator beside a slow unstable mode": (
-        continuous(A=[[0, 0], [0, 1e-4]], C=[[1, 1]], W=NOTHING, V=1),
-        np.diag([0, 2e-4]),
+        continuous(A=np.diag([0, 1e-4, -1]), C=[[1, 1, 1]], W=np.zeros((3, 3)), V=1),
+        np.diag([0, 2e-4, 0]),
         [0],
     ),
     "cross term that uses up the noise": (continuous(A=2, C=1, W=4, V=1, N=2), [[0]], [0]),
