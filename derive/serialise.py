@@ -23,7 +23,7 @@ from derive.derivation import Proof, Step
 from derive.errors import InputError
 from derive.kernel import Certificate, Poly
 from derive.terms import Equation, Symbol, Term
-from derive.wellformed import CHECKS, a_dict, a_list, check_time, expansion, shown
+from derive.wellformed import CHECKS, LENGTH, a_dict, a_list, check_time, check_work, expansion, shown
 
 DEPTH = 64  # nesting of terms
 NODES: Mapping[str, type[Term]] = {
@@ -117,7 +117,9 @@ class Reader:
             if name in found and name != "identities":
                 raise InputError(f"certificates: expected one of schema {SCHEMAS[name]}, got two; keep one")
             found[name] = (*found["identities"], part) if name == "identities" else part
-        return Proof(**found)
+        proof = Proof(**found)
+        check_work(proof)
+        return proof
 
     def certificate(self, data: Any) -> tuple[str, Any]:
         """Read one certificate; returns the field of Proof that it belongs to, and the object."""
@@ -144,6 +146,8 @@ class Reader:
             raise InputError(f"{name}: expected at most {DEPTH} levels of nesting; write it in smaller steps")
         origin, arguments = get_origin(kind), get_args(kind)
         if origin is tuple:
+            if name in ("word", "left", "right", "scalars") and len(a_list(data, name)) > LENGTH:
+                raise InputError(f"{name}: expected at most {LENGTH} letters, got {len(data)}")
             return tuple(self._read(arguments[0], item, name, depth + 1) for item in a_list(data, name))
         if origin is Literal:
             if data not in arguments or not isinstance(data, str):

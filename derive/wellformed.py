@@ -13,10 +13,13 @@ from typing import Any
 
 from derive import kernel
 from derive.context import Theory
+from derive.derivation import Proof
 from derive.errors import InputError
 from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term
 
-EXPANSION = 20_000  # products that one statement may expand to
+EXPANSION = 2_000  # products that one statement may expand to
+LENGTH = 400  # factors of one product
+WORK = 200_000  # products that one certificate of positivity, comparison or uniqueness may expand to
 TIME = re.compile(r"[A-Za-zα-ω][0-9]{0,3}")  # what prints as one variable
 
 
@@ -93,6 +96,20 @@ CHECKS: Mapping[str, Callable[[Theory, str], None]] = {
 }
 
 
+def check_work(proof: Proof) -> None:
+    """Bound the number of products that a proof makes the kernel expand, beside the claim's."""
+    work = 0
+    if proof.positivity:
+        work += sum(sum(len(f.terms) + 1 for row in s.factor for f in row) ** 2 for s in proof.positivity.squares)
+    if proof.comparison:
+        work += len(proof.comparison.matrix.terms) ** 2 * len(proof.comparison.claim.terms)
+    if proof.uniqueness:
+        both = len(proof.uniqueness.left.terms) + len(proof.uniqueness.right.terms)
+        work += both * len(proof.uniqueness.claim.terms)
+    if work > WORK:
+        raise InputError(f"expected a certificate of at most {WORK} products, got more; prove it in smaller steps")
+
+
 def expansion(term: Term, theory: Theory) -> tuple[int, int]:
     """Bound the number of products and the longest product that a term expands to.
 
@@ -113,6 +130,8 @@ def expansion(term: Term, theory: Theory) -> tuple[int, int]:
             count = count * min(widest, EXPANSION) ** min(length, 20)
         case Sum() | Block() | _:
             pass
-    if count > EXPANSION or length > EXPANSION:
+    if length > LENGTH:
+        raise InputError(f"expected products of at most {LENGTH} factors, got more; write it in smaller steps")
+    if count > EXPANSION:
         raise InputError(f"expected a statement of at most {EXPANSION} products, got more; write it in smaller steps")
     return count, length

@@ -251,7 +251,7 @@ def test_statement_that_explodes_or_nests_without_end(data):
     A = t.symbols["A"]
     spoiled = step(data, "sigma2 written out")["statement"]
     spoiled["lhs"] = to_json(Product((Sum((A, A)),) * 40), t)
-    with pytest.raises(InputError, match="at most 20000 products"):
+    with pytest.raises(InputError, match="at most 2000 products"):
         verify_data(data, "file")
     deep = A
     for _ in range(100):
@@ -268,7 +268,7 @@ def test_image_that_explodes():
     reader = Reader(t)
     small, large = (Equation(Image("double", Product((A,) * power)), "=", A) for power in (5, 40))
     assert reader.equation(to_json(small, t)) == small
-    with pytest.raises(InputError, match="at most 20000 products"):
+    with pytest.raises(InputError, match="at most 2000 products"):
         reader.equation(to_json(large, t))
 
 
@@ -323,3 +323,49 @@ def test_arbitrary_terms_are_read_or_refused(data):
     except InputError:
         return
     assert to_json(statement, reader.theory)["lhs"] == data
+
+
+# ------------------------------------------------------------------------------------------------ bounded work
+def test_word_that_is_too_long(data):
+    long = {
+        "coefficient": "1",
+        "scalars": [],
+        "left": ["R_e"] * 401,
+        "relation": "R_e",
+        "transposed": False,
+        "right": [],
+    }
+    step(data, "square")["certificates"][0]["terms"] = [[[long]]]
+    with pytest.raises(InputError, match="at most 400 letters"):
+        verify_data(data, "file")
+
+
+@pytest.mark.parametrize(("squares", "fits"), [(1, True), (2, False)])
+def test_squares_that_expand_without_end(data, squares, fits):
+    certificate = step(data, "square")["certificates"][0]
+    terms_ = [{"coefficient": "1", "scalars": [], "word": ["A"] * k + ["L@t"]} for k in range(390)]
+    certificate["squares"][0]["factor"] = [[{"rows": "n", "cols": "l", "terms": terms_}]]
+    certificate["squares"] *= squares
+    if fits:
+        assert "square" in rejected(data)
+    else:
+        with pytest.raises(InputError, match="at most 200000 products"):
+            verify_data(data, "file")
+
+
+def test_product_of_too_many_numbers(data):
+    step(data, "square")["statement"]["lhs"] = ["Product", [["Number", "1/3"]] * 401 + ["A"]]
+    with pytest.raises(InputError, match="at most 400 factors"):
+        verify_data(data, "file")
+
+
+@pytest.mark.parametrize("symbol", ["s@t", "A@t", "W@τ"])
+def test_a_symbol_that_does_not_vary_takes_no_time(symbol):
+    with pytest.raises(InputError, match="does not depend on time"):
+        Reader(theory("kalman-bucy")).read(terms.Term, symbol, "term")
+
+
+@pytest.mark.parametrize("time", ["s", "A", "t_0", "t-0"])
+def test_a_time_prints_as_a_variable_of_its_own(time):
+    with pytest.raises(InputError, match="expected a time"):
+        Reader(theory("kalman-bucy")).read(terms.Term, ["Integral", "A", time], "term")
