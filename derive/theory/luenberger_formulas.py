@@ -11,7 +11,9 @@ from derive.terms import Glyph, Symbol, Term
 def covariance(t: Theory, name: str, size: str, glyph: Glyph, meaning: str, *, parameter: bool = True) -> Symbol:
     """Declare a symmetric matrix of the unit of a covariance, of states (size n) or outputs (size l)."""
     unit = {"n": "[state]^2", "l": "[output]^2"}[size]
-    return t.matrix(name, size, size, glyph, symmetric=True, parameter=parameter, meaning=meaning, unit=unit)
+    return t.matrix(
+        name, size, size, glyph, symmetric=True, constant=False, parameter=parameter, meaning=meaning, unit=unit
+    )
 
 
 def signal(
@@ -21,12 +23,14 @@ def signal(
     unit = {"n": "[state]", "l": "[output]"}.get(rows, "")
     if mean == "any":
         t.uncentred.add(name)
-    return t.matrix(name, rows, "1", glyph, random=mean == "zero", parameter=False, meaning=meaning, unit=unit)
+    return t.matrix(
+        name, rows, "1", glyph, random=mean == "zero", constant=False, parameter=False, meaning=meaning, unit=unit
+    )
 
 
 def gain(t: Theory, name: str, glyph: Glyph, meaning: str) -> Symbol:
     """Declare a gain, which no other gain changes."""
-    return t.matrix(name, "n", "l", glyph, meaning=meaning, unit="[state]/[output]")
+    return t.matrix(name, "n", "l", glyph, constant=False, meaning=meaning, unit="[state]/[output]")
 
 
 def innovation(C: Term, P: Term, R: Term) -> Term:

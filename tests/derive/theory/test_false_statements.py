@@ -122,3 +122,9 @@ def test_an_equal_name_does_not_make_a_rejected_step_proved():
     false = step("a", Equation(A, "=", W), Proof((Certificate(Poly({((), ("A",)): 1, ((), ("W",)): -1}, "m", "m")),)))
     true = step("a", Equation(A, "=", A), Proof((Certificate(Poly({}, "m", "m")),)))
     assert not any(o.accepted for o in verify(BUCY, [false, true]))
+
+
+@pytest.mark.parametrize("name", ["x_k", "P_k", "L_k*"])
+def test_what_changes_from_step_to_step_has_no_rate(name):
+    with pytest.raises(Rejected, match="derivative of"):
+        claims(Equation(Dot(LUENBERGER.symbols[name]), "=", NOTHING), "identity", LUENBERGER.reading())
