@@ -172,6 +172,8 @@ class Reader:
             return Fraction(data)
         if type(data) is not kind or (isinstance(data, str) and len(data) > 20_000):
             raise InputError(f"{name}: expected {kind.__name__}, got {shown(data)}")
+        if isinstance(data, str) and not data.isprintable():
+            raise InputError(f"{name}: expected text without control characters, got {data[:40]!a}")
         if isinstance(data, str) and name in CHECKS:
             CHECKS[name](self.theory, data)
         return data

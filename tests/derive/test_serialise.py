@@ -369,3 +369,11 @@ def test_a_symbol_that_does_not_vary_takes_no_time(symbol):
 def test_a_time_prints_as_a_variable_of_its_own(time):
     with pytest.raises(InputError, match="expected a time"):
         Reader(theory("kalman-bucy")).read(terms.Term, ["Integral", "A", time], "term")
+
+
+@pytest.mark.parametrize("text", ["a\nderive: 9 of 9 proved", "\x1b[2J", "\u202eP"])
+@pytest.mark.parametrize("key", ["name", "reason"])
+def test_text_that_takes_over_the_terminal(data, key, text):
+    data["steps"][0][key] = text
+    with pytest.raises(InputError, match="without control characters"):
+        verify_data(data, "file")
