@@ -93,7 +93,7 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
         >>> from derive.numeric.plant import example_plant
         >>> from lmi.programs.h2 import h2
         >>> solution = solve_covariance(example_plant(), h2)
-        >>> solution.status.value, solution.residual < 1e-6
+        >>> solution.outcome.status.value, solution.residual < 1e-6
         ('solved', True)
     """
     start = perf_counter()

@@ -7,7 +7,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from lmi.validation import AGREEMENT, Route, Validation, Verdict
+from lmi.comparison import AGREEMENT, Route
+from lmi.validation import Validation, Verdict
 
 __all__ = ["print_table"]
 

@@ -183,10 +183,10 @@ _OTHERS = ("nlp", "integral", "closed-form")
 
 ROUTES = (
     RouteSpec("riccati", _riccati, (*_CONVEX, *_OTHERS)),
-    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, "hamiltonian"), largest=40),
-    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=40),
+    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
+    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
     RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, "hamiltonian"), largest=20),
-    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "integral", "hamiltonian", "closed-form")),
+    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "integral", "hamiltonian", "closed-form"), largest=40),
     RouteSpec("integral", _integral, ("riccati", *_CONVEX, "nlp", "hamiltonian", "closed-form")),
     RouteSpec("hamiltonian", _hamiltonian, (*_CONVEX, "nlp", "integral", "closed-form")),
     RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "nlp", "integral", "hamiltonian")),

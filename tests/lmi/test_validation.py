@@ -14,11 +14,12 @@ import lmi.validation as validation_module
 from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
+from lmi.comparison import AGREEMENT
 from lmi.covariance import solve_covariance
 from lmi.report import verdict_line
 from lmi.routes import ROUTES, Answer, cost_of, output_rounding
 from lmi.solve import Status
-from lmi.validation import AGREEMENT, Verdict, validate
+from lmi.validation import Verdict, validate
 
 TIMES = ("continuous", "discrete")
 NAMES = ("riccati", "lmi-primal", "lmi-dual", "lmi-h2", "nlp", "integral", "hamiltonian", "closed-form")
@@ -258,9 +259,11 @@ def test_json_has_the_keys_of_the_schema_and_the_plant_can_be_read_back():
 
 
 def test_numbers_that_json_lacks_become_null(monkeypatch):
-    run_only(monkeypatch, nlp=lambda plant: replace(garbage(plant), error=np.inf, output=float("nan")))
+    nothing = np.full((4, 2), np.nan)
+    run_only(monkeypatch, nlp=lambda plant: replace(garbage(plant), error=np.inf, output=float("nan"), gain=nothing))
     route = validate(example_plant()).as_dict()["routes"][1]
     assert route["output"] is None
+    assert route["gain"] is None
     assert route["residual"] is None
 
 
