@@ -233,6 +233,7 @@ def test_names_the_theory_does_not_know(data):
         lambda s: s["statement"].update(lhs=["Image", "mirror", "A"]),
         lambda s: s["statement"].update(lhs=["Identity", "q"]),
         lambda s: s["certificates"][0]["terms"][0].update(left=["A''"]),
+        lambda s: s["certificates"][0]["terms"][0].update(left=["A@"]),
         lambda s: s["certificates"][0]["terms"][0].update(left=["P'"]),
         lambda s: s["certificates"][0]["terms"][0].update(scalars=[""]),
         lambda s: s["certificates"][0]["terms"][0].update(scalars=["δ(t)"]),
