@@ -12,6 +12,7 @@ from itertools import pairwise
 from typing import Literal
 
 from derive.context import DeclaredInverse, Theory, adopt
+from derive.display import Displayed
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
 from derive.rules import (
@@ -79,7 +80,7 @@ class Proof:
 
 
 @dataclass(frozen=True)
-class Step:
+class Step(Displayed):
     """One step: the statement, the rule that carries it, a sentence for the reader, the proof, and what it uses.
 
     ``lemma`` steps may be used by later ones. ``number`` is the equation's number in ``source``, if it has one.
@@ -268,7 +269,7 @@ class GivenRow:
 
 
 @dataclass(frozen=True)
-class Derived:
+class Derived(Displayed):
     """A chain of steps, displayed one under the other; ``title`` names what is derived."""
 
     steps: tuple[Step, ...]
@@ -300,7 +301,7 @@ Item = Heading | Paragraph | Given | Derived | Erratum
 
 
 @dataclass(frozen=True)
-class Lecture:
+class Lecture(Displayed):
     """A lecture: items in order, over one theory."""
 
     key: str

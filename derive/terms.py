@@ -10,13 +10,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from fractions import Fraction
 
+from derive.display import Displayed
 from derive.kernel import Poly, Rejected, identity, parts
 from derive.rules import Context, Grid, differentiate, expect, sift, substitute
 
 Size = str
 
 
-class Term:
+class Term(Displayed):
     """A node of the presentation tree; + - * build sums and products, .T and .inv transposes and inverses."""
 
     __slots__ = ()
@@ -211,7 +212,7 @@ class Image(Term):
 
 
 @dataclass(frozen=True)
-class Equation:
+class Equation(Displayed):
     """A statement lhs relation rhs; relation is one of = := ⪰ ≻ (Loewner order)."""
 
     lhs: Term

@@ -340,7 +340,7 @@ def _number(value: Fraction) -> Box:
 def _power(body: Term, exponent: Box) -> Box:
     """Raise a term; the exponent joins the subscript that a symbol carries."""
     base = at_least(body, ATOM)
-    if isinstance(base, Scripted) and base.sup is None:
+    if isinstance(base, Scripted):
         return Scripted(base.base, base.sub, exponent)
     return Scripted(base, None, exponent)
 

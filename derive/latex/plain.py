@@ -47,7 +47,7 @@ def text(box: Box) -> str:
         case Scripted(base, sub, sup):
             lower = "_" + _group(text(sub)) if sub is not None else ""
             upper = "'" if sup == Op(TOP, "tight") else "^" + _group(text(sup)) if sup is not None else ""
-            return text(base) + lower + upper
+            return text(base) + lower + upper + " " * isinstance(base, Op)
         case Accented(base, accent):
             return text(base) + ACCENTS[accent][2]
         case Over(top, bottom):
