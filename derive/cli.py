@@ -20,7 +20,7 @@ from derive.errors import InputError
 
 __all__ = ["cli", "main"]
 
-REFUTED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+REFUTED, BAD_INPUT, UNDECIDED, INTERRUPTED = 1, 2, 3, 130
 
 
 class OneLineErrors(click.Group):
@@ -145,10 +145,12 @@ def verify(files: tuple[Path, ...]) -> int:
         for report in reports:
             name = report.lecture or "certificate"
             click.echo(f"{path}: {name}: {report.proved} of {report.total} proved ({report.authority})")
+            if not report.total:
+                codes.add(UNDECIDED)
             for outcome in (o for o in report.outcomes if not o.accepted):
                 click.echo(f"  rejected {outcome.step}: {outcome.message}")
                 codes.add(REFUTED)
-    return BAD_INPUT if BAD_INPUT in codes else max(codes)
+    return next(code for code in (BAD_INPUT, REFUTED, UNDECIDED, 0) if code in codes)
 
 
 def main() -> NoReturn:

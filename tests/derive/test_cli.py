@@ -69,6 +69,15 @@ def test_verify_goes_on_after_a_bad_file_and_says_so_last(file, tmp_path):
     assert len(result.stderr.splitlines()) == 2
 
 
+def test_a_file_without_steps_proves_nothing(file):
+    data = json.loads(file.read_text(encoding="utf-8")) | {"steps": [], "errata": [], "given": [], "symbols": []}
+    empty = file.with_name("empty.json")
+    empty.write_text(json.dumps(data), encoding="utf-8")
+    assert run("verify", empty).exit_code == 3
+    assert run("verify", empty, file).exit_code == 3
+    assert run("verify", empty, spoiled(file)[0]).exit_code == 1
+
+
 def test_verify_of_the_command_itself_as_a_process(file):
     path, _ = spoiled(file)
     for target, code in ((file, 0), (path, 1), (file.with_name("none"), 2)):
