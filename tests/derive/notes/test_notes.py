@@ -10,12 +10,13 @@ from html.parser import HTMLParser
 import pytest
 
 import derive
-from derive.derivation import Outcome, Paragraph
+from derive.derivation import Erratum, Outcome, Paragraph
 from derive.errors import InputError
 from derive.notes import page, write_notes
 from derive.notes.html import html
 from derive.notes.markdown import markdown
 from derive.notes.model import Display, Document, Note, document_of
+from derive.terms import Equation, Glyph, Symbol
 from derive.theory import LECTURES, lecture
 
 
@@ -82,7 +83,9 @@ def test_a_step_that_is_not_accepted_is_not_shown_as_proved():
     rows = [r for b in document.blocks if isinstance(b, Display) for r in b.rows if r.badge in ("proved", "not proved")]
     assert [r.id for r in rows if r.badge == "not proved"] == ["observer-observer.4"]
     assert document.proved == document.total - 1
-    assert "not proved" in html(document)
+    for text in (html(document), markdown(document)):
+        assert "not proved" in text
+        assert re.search(r"(<b>|\*\*)no(</b>|\*\*)", text)
 
 
 def test_without_outcomes_nothing_is_proved():
@@ -98,6 +101,38 @@ def test_a_chain_that_is_rejected_takes_its_last_row_with_it():
     closed = [Outcome(o.step, o.step != "error dynamics") for o in item.verify()]
     rows = {r.id: r.badge for b in document_of(item, closed).blocks if isinstance(b, Display) for r in b.rows}
     assert rows["observer-observer.6"] == "not proved"
+
+
+def test_every_derived_row_names_its_rule_and_what_it_rests_on(all_notes):
+    page = html(all_notes)
+    why = re.findall(r'<div class="why">.*?</div>', page)
+    derived = [w for w in why if "badge proved" in w]
+    assert len(derived) > 200
+    assert all(re.search(r'class="uses">[a-z]', w) for w in derived)
+    assert "sum of squares, from" in page
+    assert "· sum of squares, from" in markdown(all_notes)
+
+
+def test_a_finding_without_evidence_is_not_called_refuted():
+    item = lecture("luenberger")
+    bare = replace(item, items=tuple(replace(e, evidence=()) if isinstance(e, Erratum) else e for e in item.items))
+    notes = [b for b in document_of(item, item.verify()).blocks if isinstance(b, Note)]
+    assert "refuted" in {n.badge for n in notes}
+    assert {b.badge for b in document_of(bare, []).blocks if isinstance(b, Note)} == {"incomplete"}
+
+
+def test_a_wide_formula_wraps_and_a_comma_stays_with_its_formula():
+    P, A = (Symbol(name, "n", "n", Glyph(name)) for name in "PA")
+    wide = Equation(P, "=", A * P * A.T + (A - P) * P * (A - P).T + (P - A) * A * (P - A).T)
+    document = document_of(replace(lecture("observer"), items=(Paragraph((wide, ", where ", P, ".")),)), [])
+    (text,) = re.findall("<p>(.*?)</p>", html(document))
+    assert text.count("<math>") == 5
+    assert text.count('<math><mo form="infix">') == 3
+    assert re.findall(r'<span class="nb">.*?<math>((?:(?!<math>).)*)</math>(.)</span>', text)[-1] == ("<mi>P</mi>", ".")
+
+
+def test_each_lecture_names_its_sources(all_notes):
+    assert html(all_notes).count("<p>Source: ") == markdown(all_notes).count("Source: ") == len(LECTURES)
 
 
 def test_text_is_escaped():
