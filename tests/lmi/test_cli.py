@@ -119,7 +119,7 @@ def test_unconfirmed_ends_with_3(write, monkeypatch):
     assert result.stdout.splitlines()[-1].startswith("unconfirmed: ")
 
 
-@pytest.mark.parametrize("weight", [np.eye(2), np.diag([1e-300, 1e12])])
+@pytest.mark.parametrize("weight", [np.eye(2), np.diag([1e-40, 1e12])])
 def test_table_fits_80_columns_whatever_the_numbers(weight, write):
     text = GOOD + f"M = {weight.tolist()}\n"
     result = invoke("validate", write(text))
