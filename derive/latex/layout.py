@@ -337,6 +337,13 @@ def _number(value: Fraction) -> Box:
     return top if value.denominator == 1 else Over(top, bottom, small=True)
 
 
+def _map(name: str) -> Box:
+    """Lay out the name of a map by its initial; that of a qualifier ("... in continuous time") is its subscript."""
+    word, _, qualifier = name.partition(" in ")
+    letter = Letter(SCRIPT[ord(word[0].upper()) - ord("A")], upright=True)
+    return Scripted(letter, Letter(qualifier[0])) if qualifier else letter
+
+
 def _power(body: Term, exponent: Box) -> Box:
     """Raise a term; the exponent joins the subscript that a symbol carries."""
     base = at_least(body, ATOM)
@@ -365,6 +372,6 @@ def _operator(term: Term) -> Box:
         case Trace(body):
             return _applied(Letter("tr", upright=True), [layout(body)])
         case Image(name, body):
-            return _applied(Letter(SCRIPT[ord(name[0].upper()) - ord("A")], upright=True), [layout(body)], "[", "]")
+            return _applied(_map(name), [layout(body)], "[", "]")
         case _:
             raise TypeError(f"no layout for {type(term).__name__}")

@@ -89,6 +89,7 @@ TABLE = [
     (block([[A], [B]]).T, r"\begin{bmatrix} A \\ B \end{bmatrix}^\top", "[A; B]'"),
     (Expect(block([[A]])), r"\mathbb{E}\left[\begin{bmatrix} A \end{bmatrix}\right]", "E[[A]]"),
     (Image("duality", A * P), r"\mathcal{D}[A P]", "D[A P]"),
+    (Image("dual in continuous time", A * P), r"\mathcal{D}_c[A P]", "D_c[A P]"),
     (P_plus.T, r"(P^+)^\top", "(P^+)'"),
     (P_k.T, r"P_{k-1}^\top", "P_{k-1}'"),
     (P_k.inv, "P_{k-1}^{-1}", "P_{k-1}^-1"),
