@@ -17,7 +17,7 @@ SIGNS = {
     "⪰": (r"\succeq", ">="),
     "≻": (r"\succ", ">"), "⪯": (r"\preceq", "<="), "≺": (r"\prec", "<"), "≠": (r"\neq", "!="), "≥": (r"\geq", ">="),
     "≤": (r"\leq", "<="), "→": (r"\to", "->"), "≈": (r"\approx", "~"), "∫": (r"\int", "∫"), "∂": (r"\partial", "∂"),
-    "⊤": (r"\top", "'"), "∗": ("*", "*"), "⋆": (r"\star", "*"), "<": (r"\lt", "<"), ">": (r"\gt", ">"),
+    "⊤": (r"\top", "'"), "∗": (r"\ast", "*"), "⋆": (r"\star", "*"), "<": (r"\lt", "<"), ">": (r"\gt", ">"),
 }  # fmt: skip
 
 # accent -> (TeX, spacing character for MathML, combining character for plain text)

@@ -1,6 +1,7 @@
 r"""Markdown writer for GitHub: display mathematics between $$, numbers as text, reasons as a list under each display.
 
-GitHub drops \tag and \label inside aligned displays, so the number stands at the end of its line.
+\tag and \label have no place inside aligned displays, so the number stands at the end of its line. GitHub reads \\ as
+an escaped backslash unless it ends a line, and \, as a comma; neither is written outside protected spans.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ import re
 from collections.abc import Sequence
 
 from derive.latex.layout import Op, layout
-from derive.latex.layout import Row as BoxRow
+from derive.latex.layout import row as beside
 from derive.latex.tex import latex, tex
 from derive.notes.html import SYMBOLS
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table
@@ -49,12 +50,13 @@ def _block(block: Block) -> list[str]:
 
 def _display(rows: Sequence[Row]) -> list[str]:
     lines = [
-        f"{latex(r.lhs) if r.lhs is not None else ''} &{tex(BoxRow((Op(r.relation), layout(r.rhs))))}"
+        f"{latex(r.lhs) if r.lhs is not None else ''} &{tex(beside((Op(r.relation), layout(r.rhs))))}"
         + (rf" \qquad\text{{({r.number})}}" if r.number else "")
         for r in rows
     ]
     anchors = "".join(f'<a id="{r.id}"></a>' for r in rows)
-    out = [anchors, "", "$$", r"\begin{aligned}", " \\\\\n".join(lines), r"\end{aligned}", "$$", ""]
+    body = " \\\\\n".join(lines).replace(r" \\ ", " \\\\\n").replace(r"\,", " ")
+    out = [anchors, "", "$$", r"\begin{aligned}", body, r"\end{aligned}", "$$", ""]
     for row in rows:
         if row.badge:
             number = f"({row.number}) " if row.number else ""
@@ -79,7 +81,7 @@ def _note(note: Note) -> list[str]:
     for table in note.evidence:
         out += [*_table(table), ""]
     if note.true is not None:
-        out.append(f"✓ *proved* ${latex(note.true)}$ {_link(note.proof)}")
+        out.append(f"✓ *proved* {_math(note.true)} {_link(note.proof)}")
     elif note.proof is not None:
         out.append(f"✓ *proved* with its hypotheses: {_link(note.proof)}")
     return out
@@ -88,8 +90,14 @@ def _note(note: Note) -> list[str]:
 def _link(link: Link | None) -> str:
     if link is None:
         return ""
-    label = _text(link.label) if isinstance(link.label, str) else f"${latex(link.label)}$"
+    label = _text(link.label) if isinstance(link.label, str) else _math(link.label)
     return f"[{label}](#{link.target})"
+
+
+def _math(formula: Term | Equation) -> str:
+    """Print inline mathematics, between dollars, protected by backquotes where Markdown would take a backslash away."""
+    text = latex(formula)
+    return f"$`{text}`$" if re.search(r"\\[^A-Za-z]", text) else f"${text}$"
 
 
 def _text(text: str) -> str:
@@ -106,5 +114,5 @@ def _inline(text: Inline) -> str:
             case Link():
                 out.append(_link(part))
             case Term() | Equation():
-                out.append(f"${latex(part)}$")
+                out.append(_math(part))
     return "".join(out)

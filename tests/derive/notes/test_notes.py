@@ -153,6 +153,16 @@ def test_markdown_shows_numbers_reasons_and_badges():
     assert text.count(r"\begin{aligned}") == text.count(r"\end{aligned}") > 10
 
 
+def test_mathematics_survives_the_reader_of_markdown(all_notes):
+    """Outside protected spans no backslash escapes a sign but at the end of a line, and no star could be emphasis."""
+    text = re.sub(r"\$`.*?`\$", "", markdown(all_notes))
+    formulas = re.findall(r"\$\$(.*?)\$\$", text, re.DOTALL) + re.findall(r"(?<!\$)\$([^$\n]+)\$(?!\$)", text)
+    assert len(formulas) > 500
+    for formula in formulas:
+        assert not re.search(r"\\[^A-Za-z]", formula.replace("\\\\\n", "")), formula
+        assert "*" not in formula
+
+
 @pytest.mark.parametrize("name", ["o.html", "o.md", "o.json"])
 def test_notes_are_written_by_suffix(tmp_path, name):
     write_notes(["observer"], tmp_path / name)
