@@ -224,6 +224,13 @@ def test_sampling_of_a_delta():
     assert sample(square((1, "Phi@t,τ"))) == square((1, "Phi@t,τ"))
 
 
+def test_addends_with_and_without_a_delta():
+    relations = {**RELATIONS, "white": poly("n", "n", (1, "T@t,τ", ""), (-1, "P", "δ(t,τ)"))}
+    claim = poly("n", "n", (1, "T@t,τ A", ""), (-1, "P A", "δ(t,τ)"), (1, "A B", ""), (-1, "", ""))
+    accepts(claim, term("white", "", "A"), term("inverse"), relations=relations)
+    rejects("remain", claim.scale(2), term("white", "", "A"), term("inverse"), relations=relations)
+
+
 def test_setting_a_time_moves_letters_and_deltas():
     before = poly("n", "n", (1, "A Phi@t,τ", "s δ(τ,σ)"), (2, "A Phi@t,t0", "s δ(t0,σ)"))
     assert at_time(before, "τ", "t0") == poly("n", "n", (3, "A Phi@t,t0", "s δ(t0,σ)"))
