@@ -179,6 +179,24 @@ def test_erratum_with_another_true_form(data):
     assert any("neither declared nor proved" in m for m in rejected(data).values())
 
 
+def test_erratum_that_names_a_step_which_is_not_there(data):
+    next(e for e in data["errata"] if e["proved_by"])["proved_by"] = "elsewhere"
+    assert "the step elsewhere is not proved in this file" in rejected(data).values()
+
+
+@pytest.mark.parametrize(
+    ("key", "spoil"),
+    [
+        ("given", lambda data: data["given"][0].update(latex="x = 0")),
+        ("errata", lambda data: next(e for e in data["errata"] if e["true"]).update(true_latex="x = 0")),
+        ("symbols", lambda data: data["symbols"].pop()),
+    ],
+)
+def test_what_surrounds_the_steps_is_shown_as_it_is(data, key, spoil):
+    spoil(data)
+    assert rejected(data) == {key: f"the file shows other {key} than its own"}
+
+
 def test_definition_that_the_theory_does_not_make(data):
     data["given"][0]["statement"]["rhs"] = "x"
     with pytest.raises(InputError, match="not what the theory observer-ct declares"):
@@ -215,6 +233,17 @@ def test_malformed_file_gives_one_line(text, message, tmp_path):
     assert str(caught.value).startswith(str(path))
 
 
+def test_a_file_of_too_many_values(observer, tmp_path, monkeypatch):
+    path = tmp_path / "file.json"
+    path.write_text(json.dumps(observer), encoding="utf-8")
+    monkeypatch.setattr("derive.replay.MARKS", 1000)
+    with pytest.raises(InputError, match="at most 1000 values"):
+        verify_file(path)
+    monkeypatch.setattr("derive.replay.LIMIT", 2**20 // 16)
+    with pytest.raises(InputError, match="MB, got more"):
+        verify_file(path)
+
+
 def test_missing_file_folder_and_other_bytes(tmp_path):
     (tmp_path / "latin.json").write_bytes(b"\xff\xfe\x00")
     for path, message in (
@@ -237,6 +266,11 @@ def test_names_the_theory_does_not_know(data):
         lambda s: s["certificates"][0]["terms"][0].update(left=["P'"]),
         lambda s: s["certificates"][0]["terms"][0].update(scalars=[""]),
         lambda s: s["certificates"][0]["terms"][0].update(scalars=["δ(t)"]),
+        lambda s: s["statement"].update(lhs=["Sum", []]),
+        lambda s: s["certificates"][0].update(theory="kalman-bucy"),
+        lambda s: s["certificates"][0]["claim"]["terms"].append(s["certificates"][0]["claim"]["terms"][0]),
+        lambda s: s["certificates"][0]["claim"]["terms"][0].update(scalars=["∫τ", "δ(t,τ)", "∫σ"]),
+        lambda s: s["certificates"].extend([CHAIN, CHAIN]),
         lambda s: s.update(rule="magic"),
         lambda s: s.update(lemma=1),
         lambda s: s["certificates"].append({"schema": "derive-chain/1", "theory": "observer-ct", "links": [3]}),
@@ -273,6 +307,7 @@ def test_image_that_explodes():
         reader.equation(to_json(large, t))
 
 
+CHAIN = {"schema": "derive-chain/1", "theory": "observer-ct", "links": ["a"], "symbols": [], "relations": ["a"]}
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers(-3, 3) | st.floats(allow_nan=False) | st.text(max_size=6)
     | st.sampled_from(["A", "A'", "P", "x@t", "Sum", "Neg", "Product", "∫τ", "δ(t,τ)", "1/2", "=", "⪰", "n", "1"]),
