@@ -301,6 +301,8 @@ def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
     context = reading.context
     ((poly,),) = lower(item.of, reading)
     _check_reason(item, poly, reading)
+    if context.alphabet.letters[item.name].symmetric and context.alphabet.transpose(poly) != poly:
+        raise Rejected(f"{item.name} is declared symmetric, but what it inverts is not")
     inverse = Poly({((), (item.name,)): Fraction(1)}, poly.cols, poly.rows)
     relations = {
         **context.relations,

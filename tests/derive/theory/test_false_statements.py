@@ -6,6 +6,7 @@ from fractions import Fraction
 
 import pytest
 
+from derive.context import Theory
 from derive.derivation import Proof, Step, claims, verify
 from derive.kernel import Certificate, Poly, Rejected, identity
 from derive.rules import Positivity, Square
@@ -128,3 +129,12 @@ def test_an_equal_name_does_not_make_a_rejected_step_proved():
 def test_what_changes_from_step_to_step_has_no_rate(name):
     with pytest.raises(Rejected, match="derivative of"):
         claims(Equation(Dot(LUENBERGER.symbols[name]), "=", NOTHING), "identity", LUENBERGER.reading())
+
+
+def test_the_inverse_of_a_matrix_that_is_not_symmetric_is_not():
+    t = Theory("test", "test")
+    A = t.matrix("A", "n", "n")
+    t.fact("A regular", "invertible", A)
+    t.inverse("A^-1", A, "n", symmetric=True, because="A regular")
+    with pytest.raises(Rejected, match="declared symmetric, but what it inverts is not"):
+        t.reading()
