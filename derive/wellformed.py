@@ -15,11 +15,12 @@ from derive import kernel
 from derive.context import Theory
 from derive.derivation import Proof
 from derive.errors import InputError
+from derive.kernel import Poly
 from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term
 
 EXPANSION = 2_000  # products that one statement may expand to
 LENGTH = 400  # factors of one product
-WORK = 200_000  # products that one certificate of positivity, comparison or uniqueness may expand to
+WORK = 1_000_000  # letters that one certificate of positivity, comparison or uniqueness may expand to
 TIME = re.compile(r"[A-Za-zα-ω][0-9]{0,3}")  # what prints as one variable
 
 
@@ -97,17 +98,24 @@ CHECKS: Mapping[str, Callable[[Theory, str], None]] = {
 
 
 def check_work(proof: Proof) -> None:
-    """Bound the number of products that a proof makes the kernel expand, beside the claim's."""
+    """Bound the number of letters that a proof makes the kernel write, beside the claim's."""
     work = 0
     if proof.positivity:
-        work += sum(sum(len(f.terms) + 1 for row in s.factor for f in row) ** 2 for s in proof.positivity.squares)
+        factors = [[f for row in s.factor for f in row] for s in proof.positivity.squares]
+        work += sum(_work(factor, factor) for factor in factors)
     if proof.comparison:
-        work += len(proof.comparison.matrix.terms) ** 2 * len(proof.comparison.claim.terms)
+        matrix, claim = proof.comparison.matrix, proof.comparison.claim
+        work += len(matrix.terms) * _work([matrix], [claim])
     if proof.uniqueness:
-        both = len(proof.uniqueness.left.terms) + len(proof.uniqueness.right.terms)
-        work += both * len(proof.uniqueness.claim.terms)
+        work += _work([proof.uniqueness.left, proof.uniqueness.right], [proof.uniqueness.claim])
     if work > WORK:
-        raise InputError(f"expected a certificate of at most {WORK} products, got more; prove it in smaller steps")
+        raise InputError(f"expected a certificate of at most {WORK} letters, got more; prove it in smaller steps")
+
+
+def _work(left: Iterable[Poly], right: Iterable[Poly]) -> int:
+    """Return the number of letters in the product of two sums of polynomials."""
+    words, others = ([word for poly in side for _, word in poly.terms] for side in (left, right))
+    return sum(len(w) + 1 for w in words) * len(others) + sum(len(w) + 1 for w in others) * len(words)
 
 
 def expansion(term: Term, theory: Theory) -> tuple[int, int]:
