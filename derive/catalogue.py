@@ -13,10 +13,10 @@ from derive.theory import LECTURES, THEORIES, lecture, theory
 __all__ = ["DOCUMENTS", "Entry", "document_key", "equations", "lectures", "theories"]
 
 DOCUMENTS = {
-    "000": ("observer-notes", "lecture notes, Kalman filter as an observer"),
-    "001": ("fang-2018", "Fang, Ishii, Chen, Johansson, arXiv:1807.08604"),
-    "002": ("luenberger-notes", "optimal Luenberger observer"),
-    "004": ("vander-velde-2004", "Vander Velde, MIT 16.322, Lecture 23"),
+    "000": ("observer-notes", "Lecture notes, Kalman filter as an observer (equations 31.x)"),
+    "001": ("fang-2018", "Fang, Ishii, Chen, Johansson, arXiv:1807.08604 (2018)"),
+    "002": ("luenberger-notes", "Optimal Luenberger observer (lecture notes)"),
+    "004": ("vander-velde-2004", "Vander Velde, MIT 16.322, Lecture 23 (2004)"),
 }
 
 

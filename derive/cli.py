@@ -122,7 +122,7 @@ def tour(folder: Path) -> int:
 @click.option("--to", "flavour", type=click.Choice(["gfm"]), help="Flavour of Markdown.")
 def notes(lectures: tuple[str, ...], path: Path, flavour: str | None) -> int:
     """Write the notes of each LECTURE (see `derive list`) to a file whose suffix chooses the format."""
-    from derive.handout import write_notes
+    from derive.notes import write_notes
 
     with progress("deriving") as show:
         return 0 if write_notes(lectures, path, flavour, show) else REFUTED

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from derive import __version__
-from derive.handout import write_notes
+from derive.notes import write_notes
 from derive.theory import LECTURES
 
 HERE = Path(__file__).parent

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Literal
 
+from derive.catalogue import DOCUMENTS
 from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Rule, Step
 from derive.terms import Dot, Equation, Expect, Inverse, Number, Symbol, Term
@@ -52,12 +53,7 @@ RULES: dict[Rule, str] = {
     "uniqueness": "uniqueness",
     "chain": "chain",
 }
-SOURCES = {
-    "000": "Lecture notes, Kalman filter as an observer (equations 31.x)",
-    "001": "Fang, Ishii, Chen, Johansson, arXiv:1807.08604 (2018)",
-    "002": "Optimal Luenberger observer (lecture notes)",
-    "004": "Vander Velde, MIT 16.322, Lecture 23 (2004)",
-}
+SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,7 @@ def test_notes_are_written_by_suffix(tmp_path, name):
 
 
 def test_an_unknown_suffix_is_one_clear_line(tmp_path):
-    with pytest.raises(InputError, match=r"expected a name that ends in .html, .json, .md, got '.odt'"):
+    with pytest.raises(InputError, match=r"expected a suffix .md, .html, .json, got '.odt'"):
         write_notes(["observer"], tmp_path / "o.odt")
     with pytest.raises(InputError, match=r"lecture 'obs': unknown"):
         derive.notes.write_notes(["obs"], tmp_path / "o.md")

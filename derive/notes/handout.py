@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from derive.derivation import Lecture, Outcome
 from derive.document import lecture_to_json
@@ -12,9 +13,17 @@ from derive.errors import InputError
 from derive.files import check_place, write
 from derive.theory import LECTURES, lecture
 
-__all__ = ["FORMATS", "write_notes"]
+__all__ = ["FORMATS", "page", "write_notes"]
+
+if TYPE_CHECKING:
+    from derive.notes.model import Document
 
 Replayed = Sequence[tuple[Lecture, Sequence[Outcome]]]
+
+
+def page(keys: Sequence[str]) -> Document:
+    """Return the notes of some lectures, each replayed by the kernel, as one document."""
+    return _page([(lecture(key), lecture(key).verify()) for key in keys])
 
 
 def write_notes(
@@ -64,7 +73,7 @@ def _markdown(replayed: Replayed) -> str:
     return markdown(_page(replayed))
 
 
-def _page(replayed: Replayed):
+def _page(replayed: Replayed) -> Document:
     from derive.notes.model import document_of, join
 
     documents = [document_of(lecture, outcomes) for lecture, outcomes in replayed]
