@@ -43,7 +43,8 @@ def enclosed_eigenvalues(H: acb_mat, bits: int) -> list[acb] | None:
         if not beside < before or beside < -bits:
             break
         before = beside
-        R = (R + R * _improvement(product, gaps)).mid()
+        Y = _improvement(product, gaps)
+        R, L = (R + R * Y).mid(), (L - Y * L).mid()
     T = _similar(H, R, _sharper(L, R))
     return None if T is None else _components(T)
 

@@ -94,7 +94,10 @@ def enclose_by_eigenvalues(plant: Plant, digits: int = 20) -> LogDetEnclosure:
     with working_bits(accuracy + SPARE_BITS):
         equation = Equation.of(plant)
         loop = enclosed_eigenvalues(acb_mat(equation.F), accuracy)
-        whole = _by_hamiltonian(equation, accuracy) if plant.is_continuous else _by_pencil(equation, accuracy)
+        try:
+            whole = _by_hamiltonian(equation, accuracy) if plant.is_continuous else _by_pencil(equation, accuracy)
+        except ZeroDivisionError:
+            return _open(plant, "eigenvalues", "pencil: expected regular at 1, -1 or j, got singular")
         if loop is None or whole is None:
             return _open(plant, "eigenvalues", "eigenvectors: expected independent ones, got none in double precision")
         unstable = 2 * sum((_unstable(x, plant) for x in loop), arb(0))
