@@ -38,14 +38,16 @@ def enclosed_eigenvalues(H: acb_mat, bits: int) -> list[acb] | None:
     before = float("inf")
     for _ in range(STEPS):
         L = _sharper(L, R)
-        product = (L * H * R).mid()
+        product = L * H * R
         gaps, beside = _gaps(product)
         if not beside < before or beside < -bits:
             break
         before = beside
         Y = _improvement(product, gaps)
         R, L = (R + R * Y).mid(), (L - Y * L).mid()
-    T = _similar(H, R, _sharper(L, R))
+    else:
+        product = L * H * R
+    T = _similar(product, L, R)
     return None if T is None else _components(T)
 
 
@@ -62,18 +64,17 @@ def _sharper(L: acb_mat, R: acb_mat) -> acb_mat:
     return (L * 2 - L * (R * L)).mid()
 
 
-def _similar(H: acb_mat, R: acb_mat, L: acb_mat) -> acb_mat | None:
-    """Return balls around R^-1 H R = (I - E)^-1 L H R, E = I - L R.
+def _similar(product: acb_mat, L: acb_mat, R: acb_mat) -> acb_mat | None:
+    """Return balls around R^-1 H R = (I - E)^-1 L H R, E = I - L R, from the product L H R.
 
     |(I - E)^-1 - I|_inf <= e / (1 - e) for e = |E|_inf < 1.
     """
-    n = H.nrows()
+    n = product.nrows()
     e = _row_sum(_identity(n) - L * R)
     if not e < 1:
         return None
-    T = L * H * R
-    rest = arb(0, (e / (1 - e) * _row_sum(T)).abs_upper())
-    return acb_mat(n, n, [x + acb(rest, rest) for x in T.entries()])
+    rest = arb(0, (e / (1 - e) * _row_sum(product)).abs_upper())
+    return acb_mat(n, n, [x + acb(rest, rest) for x in product.entries()])
 
 
 def _row_sum(X: acb_mat) -> arb:
@@ -90,7 +91,7 @@ def _identity(n: int) -> acb_mat:
 
 def _gaps(T: acb_mat) -> tuple[list[list[acb]], float]:
     """Return d_j - d_i for the diagonal d, and log2 of the largest entry beside it relative to the largest on it."""
-    rows = T.tolist()
+    rows = T.mid().tolist()
     d = [row[i] for i, row in enumerate(rows)]
     gaps = [[y - x for y in d] for x in d]
     beside = max((_log2(x) for i, row in enumerate(rows) for j, x in enumerate(row) if i != j), default=-float("inf"))
@@ -112,7 +113,7 @@ def _improvement(T: acb_mat, gaps: list[list[acb]]) -> acb_mat:
     n = T.nrows()
     limit = np.log2(NEAR)
     Y = acb_mat(n, n)
-    for i, row in enumerate(T.tolist()):
+    for i, row in enumerate(T.mid().tolist()):
         for j, entry in enumerate(row):
             if i != j and _log2(entry) < _log2(gaps[i][j]) + limit:
                 Y[i, j] = entry / gaps[i][j]

@@ -194,6 +194,13 @@ def test_rejects_roots_that_do_not_stabilise():
         assert verify_riccati(mixed, np.diag(root)).status == status
 
 
+def test_refuses_a_ball_that_is_too_large_to_close():
+    """With A = 0 the loop is 0 everywhere, so that only the size of the remainder can refuse: 2 k g rho = 0.8 > 0.6."""
+    refused = verify_riccati(discrete(A=0, C=1, Q=5, R=1), np.array([[4.0]]))
+    assert (refused.status, refused.reason[:5]) == ("open", "ball:")
+    assert verify_riccati(discrete(A=0, C=1, Q=5, R=1), np.array([[4.9]])).P.contains(arb_mat([[5]]))
+
+
 def test_rejects_a_plant_without_solution():
     hidden = Plant(time="continuous", A=np.eye(1), C=np.zeros((1, 1)), W=np.eye(1), V=np.eye(1), N=np.zeros((1, 1)),
                    M=np.eye(1))  # fmt: skip

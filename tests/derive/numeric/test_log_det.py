@@ -8,7 +8,7 @@ from flint import acb, acb_mat, arb
 from scipy.integrate import quad
 
 from derive.numeric.balls import exact, working_bits
-from derive.numeric.eigenvalues import enclosed_eigenvalues
+from derive.numeric.eigenvalues import _components, enclosed_eigenvalues
 from derive.numeric.enclosure import enclose_riccati
 from derive.numeric.log_det import (
     enclose_by_eigenvalues,
@@ -245,6 +245,16 @@ def test_eigenvalues_of_random_matrices():
 
 def _place(z):
     return complex(z.mid() if isinstance(z, acb) else z).real, complex(z.mid() if isinstance(z, acb) else z).imag
+
+
+def test_overlapping_discs_are_one_box():
+    """The eigenvalues +-0.03 lie outside the second row's disc of radius 0.001, inside the union."""
+    with working_bits(100):
+        for box in _components(acb_mat([[0, 1], [0.001, 0]])):
+            assert box.contains(acb(arb(0.001).sqrt()))
+            assert box.contains(-acb(arb(0.001).sqrt()))
+        apart = _components(acb_mat([[0, 0.001], [0.001, 1]]))
+        assert not apart[0].overlaps(apart[1])
 
 
 def test_defective_matrices_are_refused_or_held():
