@@ -43,7 +43,7 @@ def _over_the_axis(top: fmpq_poly, bottom: fmpq_poly, hints: NDArray[Any], digit
     end = 2 * bound.sqrt().abs_upper()
     cuts = [x for x in sorted({abs(float(h.imag)) for h in hints}) if 0 < x < float(end)]
     near = _integrated(top, bottom, lambda w: -w * w, [arb(0), *map(arb, cuts), arb(end)], digits)
-    return (near + _tail(top, bottom, bound, arb(end))) / arb.pi()
+    return (near + _tail(top, bottom, bound, arb(end), ctx.prec // 2 + 4)) / arb.pi()
 
 
 def _over_the_circle(top: fmpq_poly, bottom: fmpq_poly, hints: NDArray[Any], digits: int) -> arb:
@@ -87,12 +87,12 @@ def _root_bound(p: fmpq_poly) -> arb:
     return arb(bound.abs_upper())
 
 
-def _tail(top: fmpq_poly, bottom: fmpq_poly, bound: arb, end: arb) -> arb:
+def _tail(top: fmpq_poly, bottom: fmpq_poly, bound: arb, end: arb, terms: int) -> arb:
     """Return int_end^inf ln(n/d) dw, x = -w^2, end^2 >= 4 bound.
 
-    ln n(x) - ln d(x) = sum_k c_k x^-k with |c_k| <= 2 n bound^k / k, so the rest after K terms is below 2 n end 4^-K.
+    ln n(x) - ln d(x) = sum_k c_k x^-k with |c_k| <= 2 n bound^k / k, so the rest after K = `terms` of them is below
+    2 n end 4^-K.
     """
-    terms = ctx.prec // 2 + 4
     c = [x - y for x, y in zip(_log_reversed(top, terms), _log_reversed(bottom, terms), strict=True)]
     series = (x * (-1) ** k * end ** (1 - 2 * k) / (2 * k - 1) for k, x in enumerate(c, 1))
     rest = 2 * max(top.degree(), bottom.degree()) * end * arb(4) ** -terms

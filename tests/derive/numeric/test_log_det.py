@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from flint import acb, acb_mat, arb
+from flint import acb, acb_mat, arb, fmpq_poly
 from scipy.integrate import quad
 
 from derive.numeric.balls import exact, working_bits
@@ -16,6 +16,7 @@ from derive.numeric.log_det import (
     enclose_by_quadrature,
     enclose_log_det,
 )
+from derive.numeric.log_integral import _tail
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import solve_riccati
 from derive.numeric.spectral_polynomials import spectral_polynomials
@@ -182,6 +183,25 @@ def test_adaptive_quadrature_is_good_to_thirteen_digits(time, damping):
     error = float(abs((truth.value - output_error_integral(plant).value) / truth.value).abs_upper())
     assert error <= 1e-13
     assert hamiltonian_route(plant).value == pytest.approx(float(truth.value.mid()), rel=1e-12)
+
+
+@pytest.mark.parametrize("terms", [1, 2, 3, 10, 100])
+def test_the_rest_of_the_series_is_in_the_ball(terms):
+    """int_e^inf ln((w^2 + 4)/(w^2 + 1)) dw = pi - e ln((e^2 + 4)/(e^2 + 1)) - 4 atan(e/2) + 2 atan(e)."""
+    with working_bits(250):
+        e = arb(4)
+        found = _tail(fmpq_poly([-4, 1]), fmpq_poly([-1, 1]), arb(4), e, terms)
+        truth = arb.pi() - e * ((e**2 + 4) / (e**2 + 1)).log() - 4 * (e / 2).atan() + 2 * e.atan()
+        assert found.overlaps(truth)
+        assert found.rad() < 40 * arb(4) ** -terms
+
+
+def test_steep_spectra():
+    """Between its slow modes and its bandwidth det Phi falls like w^-8, through twenty orders of magnitude."""
+    plant = continuous(A=np.eye(4, k=1) - 0.05 * np.eye(4), C=np.eye(1, 4), W=np.diag([0, 0, 0, 1e8]), V=1)
+    found = enclose_by_quadrature(plant)
+    assert (found.status, found.digits >= 15) == ("verified", True)
+    assert found.value.overlaps(enclose_by_polynomials(plant).value)
 
 
 @pytest.mark.parametrize("time", TIMES)
