@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 from derive import __version__, catalogue
 from derive.cli import aligned, cli
+from derive.derivation import Outcome
 from derive.document import lecture_to_json
 from derive.theory import LECTURES, lecture
 
@@ -111,6 +112,7 @@ def test_equations_of_a_document(document):
     assert all((row["steps"] > 0) or row["verdict"] != "proved" for row in rows)
     numbers = [row["number"] for row in rows]
     assert len(set(numbers)) == len(numbers)
+    assert [n.startswith("u") for n in numbers] == sorted(n.startswith("u") for n in numbers)
     unnumbered = [int(n[1:]) for n in numbers if n.startswith("u")]
     assert unnumbered == sorted(unnumbered)
     by_key = json.loads(run("list", "--equations", catalogue.DOCUMENTS[document][0], "--json").stdout)
@@ -201,6 +203,26 @@ def test_an_existing_file_is_replaced_and_keeps_no_trace_of_a_failure(tmp_path):
     folder.mkdir()
     assert run("notes", "observer", "-o", folder).exit_code == 2
     assert sorted(p.name for p in tmp_path.iterdir()) == ["folder.md", "notes.md"]
+
+
+def test_a_write_that_fails_leaves_nothing(tmp_path, monkeypatch):
+    def refuse(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.replace", refuse)
+    assert "No space left on device" in one_line(run("notes", "observer", "-o", tmp_path / "x.md"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_place_is_looked_at_before_the_work(tmp_path, monkeypatch):
+    monkeypatch.setattr("derive.notes.handout.lecture", None)
+    assert "expected an existing folder" in one_line(run("notes", "observer", "-o", tmp_path / "no" / "x.md"))
+
+
+def test_notes_of_a_lecture_that_does_not_replay_end_with_one(tmp_path, monkeypatch):
+    monkeypatch.setattr("derive.derivation.Lecture.verify", lambda self: [Outcome(s.name, False) for s in self.steps])
+    assert run("notes", "observer", "-o", tmp_path / "x.md").exit_code == 1
+    assert "proved and replayed" in (tmp_path / "x.md").read_text(encoding="utf-8")
 
 
 def test_a_folder_without_permission(tmp_path, monkeypatch):

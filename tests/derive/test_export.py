@@ -45,6 +45,8 @@ def test_zeros_blocks_traces_and_scalars():
     A, C = s["A"], s["C"]
     assert to_sympy(Equation(A - A, "=", Zero("", ""))).rhs == sympy.ZeroMatrix(*to_sympy(A).shape)
     assert shape(block([[A], [C]])) == ("n+l", "n")
+    assert shape(C.T) == ("n", "l")
+    assert shape(A * C.T) == ("n", "l")
     assert to_sympy(block([[A], [C]])).blockshape == (2, 1)
     assert isinstance(to_sympy(Trace(A)), sympy.Trace)
     assert to_sympy(Number(sympy.Rational(1, 2)) * Identity("n")) == sympy.Identity(to_sympy(A).rows) / 2

@@ -2,6 +2,8 @@
 
 import copy
 import json
+from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,7 +13,7 @@ from derive import terms
 from derive.context import Theory
 from derive.document import document_from_json, lecture_to_json
 from derive.errors import InputError
-from derive.replay import verify_data, verify_file
+from derive.replay import taught, verify_data, verify_file
 from derive.serialise import NODES, Reader, to_json
 from derive.terms import Equation, Identity, Image, Product, Sum, Transpose
 from derive.theory import LECTURES, lecture, theory
@@ -210,6 +212,18 @@ def test_single_certificate_with_a_changed_coefficient(data):
     assert not verify_data(single, "file").accepted
 
 
+def test_a_lemma_of_a_lecture_serves_only_when_it_replays(monkeypatch):
+    original = lecture("observer")
+    lemma = original.step("sigma2 written out")
+    false = replace(lemma, name="false", statement=replace(lemma.statement, rhs=theory("observer-ct").symbols["W"]))
+    steps = [s for s in original.steps if s.name != lemma.name] + [false, lemma]
+    other = SimpleNamespace(theory=original.theory, steps=steps)
+    monkeypatch.setattr("derive.theory.lecture", lambda key: other if key == "observer" else lecture(key))
+    known = taught(original.theory).context.relations
+    assert lemma.name in known
+    assert "false" not in known
+
+
 # ------------------------------------------------------------------------------------------------ malformed
 @pytest.mark.parametrize(
     ("text", "message"),
@@ -253,6 +267,13 @@ def test_missing_file_folder_and_other_bytes(tmp_path):
     ):
         with pytest.raises(InputError, match=message):
             verify_file(path)
+
+
+@pytest.mark.parametrize("pair", [["A"], ["A", "1", "2"], "A", [1, 2]])
+def test_evidence_that_is_no_pair(data, pair):
+    next(e for e in data["errata"] if e["evidence"])["evidence"][0]["values"].append(pair)
+    with pytest.raises(InputError, match="values: "):
+        verify_data(data, "file")
 
 
 def test_names_the_theory_does_not_know(data):

@@ -9,7 +9,8 @@ import pytest
 
 from derive import tour, worked
 from derive.errors import InputError
-from derive.notes.model import Display, Figure, Section, Table
+from derive.latex import plain
+from derive.notes.model import Display, Figure, Para, Section, Table
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.replay import verify_file
 from derive.theory import LECTURES, lecture
@@ -169,6 +170,16 @@ def test_numbers_are_printed_with_a_minus_sign():
     assert worked.number(None) == "–"
     assert worked.mode(-1 - 2j) == "−1 − 2j"
     assert worked.mode(3 + 0j) == "3"
+    assert [plain(worked.decimal(x)) for x in (-0.5, 0.0, 2.25)] == ["-0.5", "0", "2.25"]
+
+
+def test_the_verdict_names_those_who_confirm(validation):
+    blocks = worked.worked_example(example_plant(), validation)
+    (text,) = next(b.text for b in blocks if isinstance(b, Para) and "Verdict" in str(b.text))
+    assert "agree" in text
+    for route in validation["routes"]:
+        confirms = route["name"] not in ("riccati", "hamiltonian", "closed-form")
+        assert (route["name"] in text) == confirms
 
 
 def test_the_validation_is_plain_data(validation):
