@@ -1,13 +1,13 @@
 """Modes on the boundary of stability that the process noise does not excite, where the error covariance vanishes."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.modes import Matrix, Time, distance_to_stability, spectral_scale
+from derive.numeric.subspaces import RANK_RTOL, invariant_subspace, nearest, unseen_subspace
 
 __all__ = ["Boundary", "unexcited_boundary"]
 
@@ -15,13 +15,11 @@ CANDIDATE_RTOL = 1e-3
 """Distance from the boundary within which a mode is looked at: a computed quadruple mode is good to eps^(1/4) only."""
 
 BOUNDARY_RTOL = 1e-11
-"""Distance of a mode, or of the mean of a cluster, that counts as zero. A mean is accurate where its modes are not."""
+"""Distance of a mode, or of the mean of a cluster, that counts as zero, relative to the size of F on these modes alone.
+A mean is accurate where its modes are not."""
 
 CLUSTER_RTOLS = (0.0, 1e-7, 1e-5, 1e-4, 1e-3)
 """Distances at which neighbouring modes are taken as one multiple mode, tried in this order."""
-
-RANK_RTOL = 64 * np.finfo(float).eps
-"""Singular value that counts as zero, relative and times n."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,48 +55,24 @@ def unexcited_boundary(F: Matrix, W: Matrix, time: Time, noise_size: float, slac
     n = len(F)
     scale = spectral_scale(F, time)
     nothing = Boundary(np.eye(n), np.zeros((n, 0)), np.zeros(0, complex))
-    near = _invariant(F.T, lambda mode: bool(abs(distance_to_stability(mode, time)) <= CANDIDATE_RTOL * scale))
+    near = invariant_subspace(F.T, lambda mode: bool(abs(distance_to_stability(mode, time)) <= CANDIDATE_RTOL * scale))
     rtol = slack * n * RANK_RTOL
-    near = near @ _unexcited(near.T @ F.T @ near, W @ near, rtol * noise_size, rtol * scale)
+    near = near @ unseen_subspace(near.T @ F.T @ near, W @ near, rtol * noise_size, rtol * scale)
     if near.shape[1] == 0:
         return nothing
     restricted = near.T @ F.T @ near
     modes = np.linalg.eigvals(restricted)
-    clusters = _boundary_clusters(list(modes), time, scale, slack * BOUNDARY_RTOL * scale)
+    size = spectral_scale(restricted, time)
+    tol = max(slack * BOUNDARY_RTOL * size, rtol * scale)
+    clusters = _boundary_clusters(list(modes), time, size, tol)
     if not clusters:
         return nothing
     chosen = [mode for cluster in clusters for mode in cluster]
     others = [mode for mode in modes if mode not in chosen]
-    removed = near @ _invariant(restricted, lambda mode: _nearest(mode, chosen) <= _nearest(mode, others))
+    removed = near @ invariant_subspace(restricted, lambda mode: nearest(mode, chosen) <= nearest(mode, others))
     kept = np.linalg.qr(removed, mode="complete")[0][:, removed.shape[1] :]
     means = np.concatenate([np.full(len(cluster), np.mean(cluster)) for cluster in clusters])
     return Boundary(kept, removed, _snapped(means, time))
-
-
-def _invariant(F: Matrix, selected: Callable[[complex], bool]) -> Matrix:
-    """Return an orthonormal real basis of the invariant subspace for the selected modes and their conjugates."""
-    from scipy.linalg import schur
-
-    _, Z, k = cast(tuple[Any, Any, int], schur(F, output="complex", sort=selected))
-    basis = np.linalg.svd(np.hstack([Z[:, :k].real, Z[:, :k].imag]), full_matrices=False)[0]
-    return basis[:, :k]
-
-
-def _unexcited(F: Matrix, W: Matrix, noise_tol: float, rate_tol: float) -> Matrix:
-    """Return an orthonormal basis of the largest F-invariant subspace in the kernel of W."""
-    K = _kernel(W, noise_tol)
-    while K.shape[1]:
-        leaving = F @ K - K @ (K.T @ F @ K)
-        inner = _kernel(leaving, rate_tol)
-        if inner.shape[1] == K.shape[1]:
-            return K
-        K = K @ inner
-    return K
-
-
-def _kernel(X: Matrix, tol: float) -> Matrix:
-    _, sizes, rows = np.linalg.svd(X)
-    return rows[np.count_nonzero(sizes > tol) :].T
 
 
 def _boundary_clusters(modes: list[complex], time: Time, scale: float, tol: float) -> list[list[complex]]:
@@ -120,10 +94,6 @@ def _clusters(modes: list[complex], distance: float) -> list[list[complex]]:
         clusters = [group for group in clusters if group not in linked]
         clusters.append([mode, *(other for group in linked for other in group)])
     return clusters
-
-
-def _nearest(mode: complex, modes: Any) -> float:
-    return min((abs(mode - other) for other in modes), default=np.inf)
 
 
 def _snapped(modes: NDArray[Any], time: Time) -> NDArray[Any]:

@@ -24,6 +24,9 @@ __all__ = [
     "symmetric",
 ]
 
+LARGEST = 1e50
+"""Largest number, and inverse of the smallest, so that C^2/V and its like stay within double precision."""
+
 SYMMETRY_RTOL = 1e-10
 """Largest |X - X'| taken for rounding, relative to the largest entry."""
 
@@ -119,7 +122,7 @@ def _row(name: str, i: int, row: Any) -> list[float]:
 
 
 def read_number(name: str, value: Any) -> float:
-    """Return a finite real number; booleans, texts and complex numbers are none."""
+    """Return a finite real number of a size that squares; booleans, texts and complex numbers are none."""
     if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         raise InputError(f"{name}: expected a real number, got {show(value)}; write it as 1 or 1.0")
     try:
@@ -128,6 +131,10 @@ def read_number(name: str, value: Any) -> float:
         number = np.inf
     if not np.isfinite(number):
         raise InputError(f"{name}: expected a finite number, got {number}; remove or replace it")
+    if number and not 1 / LARGEST <= abs(number) <= LARGEST:
+        raise InputError(
+            f"{name}: expected 0 or a size between {1 / LARGEST:g} and {LARGEST:g}, got {number:g}; choose other units"
+        )
     return number
 
 

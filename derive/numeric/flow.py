@@ -26,8 +26,7 @@ class Flow:
 
     def after(self, P: Matrix) -> Matrix:
         """Return the covariance that P leads to."""
-        moved = self.E @ np.linalg.solve((np.eye(len(P)) + self.G @ P).T, P.T).T @ self.E.T
-        return self.H + (moved + moved.T) / 2
+        return self.H + _parallel(P, self.G, self.E)
 
     def doubled(self) -> "Flow":
         """Return the map over twice the time: E (I + H G)^-1 E, G + E'(I + G H)^-1 G E, H + E H (I + G H)^-1 E'.
@@ -35,11 +34,17 @@ class Flow:
         Source: B. D. O. Anderson, Second-order convergent algorithms for the steady-state Riccati equation, Int. J.
             Control 28 (1978) 295-306.
         """
-        n = len(self.E)
-        solved = np.linalg.solve(np.eye(n) + self.G @ self.H, np.hstack([self.E.T, self.G @ self.E]))
-        grown = self.E @ self.H @ solved[:, :n]
-        gathered = self.E.T @ solved[:, n:]
-        return Flow((self.E.T @ solved[:, :n]).T, self.G + (gathered + gathered.T) / 2, self.H + (grown + grown.T) / 2)
+        E = self.E @ np.linalg.solve(np.eye(len(self.E)) + self.H @ self.G, self.E)
+        return Flow(E, self.G + _parallel(self.G, self.H, self.E.T), self.after(self.H))
+
+
+def _parallel(P: Matrix, G: Matrix, E: Matrix) -> Matrix:
+    """Return E (P^-1 + G)^-1 E' = E Y (I + Y'G Y)^-1 Y'E' with P = Y Y', a sum of squares for P, G >= 0."""
+    variances, directions = np.linalg.eigh((P + P.T) / 2)
+    root = directions * np.sqrt(np.maximum(variances, 0.0))
+    sizes, axes = np.linalg.eigh(root.T @ G @ root)
+    factor = E @ root @ axes / np.sqrt(1 + np.maximum(sizes, 0.0))
+    return factor @ factor.T
 
 
 def one_step(form: NormalForm) -> Flow:

@@ -27,7 +27,7 @@ STATIONARY = 1e-6
 """Relative size of the gradient at which a gain counts as optimal."""
 
 COORDINATE_FLOOR = 1e-6
-"""Variance, relative to the mean one, that the coordinates take a state to have at least."""
+"""Variance, relative to the largest one, that the coordinates take a state to have at least."""
 
 NOISE_FLOOR = 1e-9
 """Process noise that is added so that ln det P has a minimum even where P is singular, relative to what keeps up P.
@@ -125,7 +125,9 @@ def _covariance(form: NormalForm, K: Matrix) -> Matrix:
     """Return P for a gain, not a number when F - K C is not stable."""
     F, C, W = form.uncorrelated()
     if np.isfinite(K).all() and np.all(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) < 0):
-        return error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
+        P = error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
+        if np.isfinite(P).all():
+            return P
     return np.full(F.shape, np.nan)
 
 
@@ -145,8 +147,9 @@ def _optimal(form: NormalForm) -> tuple[Matrix, int]:
     for _ in range(ROUNDS):
         if not np.trace(P) > 0:
             break
-        T = np.linalg.cholesky(P + COORDINATE_FLOOR * np.trace(P) / len(P) * np.eye(len(P)))
-        R = np.linalg.inv(T)
+        variances, directions = np.linalg.eigh(P)
+        deviations = np.sqrt(np.maximum(variances, COORDINATE_FLOOR * variances.max()))
+        T, R = directions * deviations, (directions / deviations).T
         floor = NOISE_FLOOR * _decay(F - K @ C, form.time)
         found, taken = _solve(R @ F @ T, C @ T, R @ W @ R.T + floor * np.eye(len(P)), R @ K, form.time)
         better, iterations = _covariance(form, T @ found), iterations + taken
@@ -169,6 +172,8 @@ def _solve(F: Matrix, C: Matrix, W: Matrix, K: Matrix, time: Time) -> tuple[Matr
     S = _symmetric_basis(len(F))
     solver = _program(F, C, W, S, time)
     X = solve_lyapunov((F - K @ C).T, np.eye(len(F)), time)
+    if not np.isfinite(X).all():
+        return K, 0
     first = np.concatenate([S.T @ X.ravel(order="F"), (X @ K).ravel(order="F")])
     x = np.array(solver(x0=first)["x"]).ravel()
     X = (S @ x[: S.shape[1]]).reshape(F.shape, order="F")

@@ -24,7 +24,7 @@ def solve_lyapunov(F: Matrix, Q: Matrix, time: Time) -> Matrix:
         time: "continuous" or "discrete".
 
     Returns:
-        The symmetric X (n, n).
+        The symmetric X (n, n), not finite when F is not stable enough for its numbers.
 
     Source: R. A. Smith, Matrix equation XA + BX = C, SIAM J. Appl. Math. 16 (1968) 198-201.
     """
@@ -37,7 +37,12 @@ def solve_lyapunov(F: Matrix, Q: Matrix, time: Time) -> Matrix:
             warnings.simplefilter("ignore", RuntimeWarning)  # near the boundary: callers judge the residual
             X = solve_continuous_lyapunov(F, -Q)
         return (X + X.T) / 2
-    X = np.array(Q, dtype=float)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _doubled(F, np.array(Q, dtype=float))
+
+
+def _doubled(F: Matrix, X: Matrix) -> Matrix:
+    """Return the sum of F^k Q F'^k for X = Q."""
     for _ in range(DOUBLINGS):
         increment = F @ X @ F.T
         X = X + increment

@@ -1,20 +1,26 @@
 """Modes of a matrix that decide whether an estimator exists: unstable, on the boundary, seen or not seen."""
 
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Matrix", "Time", "distance_to_stability", "format_mode", "spectral_scale", "undetectable_mode"]
+from derive.numeric.subspaces import RANK_RTOL, invariant_subspace, nearest, unseen_subspace
+
+__all__ = ["Matrix", "Time", "balancing", "distance_to_stability", "format_mode", "spectral_scale", "undetectable_mode"]
 
 Matrix = NDArray[np.floating[Any]]
 Time = Literal["continuous", "discrete"]
 
-UNOBSERVABLE_RTOL = 64 * np.finfo(float).eps
-"""A mode is unobservable when the smallest singular value of [A - lambda I; C] is below this, relative and times n."""
+MODE_RTOL = 1e-7
+"""Largest error of a computed mode, relative to the size of A: that of a double one, sqrt(eps)."""
 
-BOUNDARY_RTOL = 1e-7
-"""Modes this close to the boundary are asked to be seen too: a computed double mode is only good to sqrt(eps)."""
+
+def balancing(A: Matrix) -> Matrix:
+    """Return powers of two t that make rows and columns of A t_j / t_i alike in size."""
+    from scipy.linalg import lapack
+
+    return cast(Any, lapack).dgebal(A, scale=1, permute=0)[3]
 
 
 def spectral_scale(A: Matrix, time: Time) -> float:
@@ -41,32 +47,42 @@ def format_mode(mode: complex) -> str:
 def undetectable_mode(A: Matrix, C: Matrix, time: Time) -> complex | None:
     """Return a mode of A that is not asymptotically stable and that C does not see, or None when (A, C) is detectable.
 
-    Popov-Belevitch-Hautus: lambda is unobservable when rank [A - lambda I; C] < n. The states are first scaled by
-    powers of two that balance A, and each row of C to the size of A, so that the answer does not depend on units.
+    On the invariant subspace of the modes that are not stable, the largest invariant subspace in the kernel of C is
+    found; its modes are unobservable. The states are first scaled by powers of two that balance A, and each row of C to
+    the size of A, so that the answer does not depend on units.
 
     Args:
         A: state matrix (n, n).
         C: output matrix (l, n).
         time: "continuous" or "discrete".
-
-    Source: M. L. J. Hautus, Controllability and observability conditions of linear autonomous systems, 1969.
     """
-    n = len(A)
-    balanced, C = _balanced_pair(A, C)
-    modes = np.linalg.eigvals(balanced)
-    scale = spectral_scale(balanced, time)
-    for mode in modes[distance_to_stability(modes, time) >= -BOUNDARY_RTOL * scale]:
-        pencil = np.vstack([balanced - mode * np.eye(n), C])
-        if np.linalg.svd(pencil, compute_uv=False)[-1] <= n * UNOBSERVABLE_RTOL * max(scale, abs(mode)):
-            return complex(mode)
-    return None
+    A, C = _balanced_pair(A, C)
+    scale = spectral_scale(A, time)
+    modes, errors = _modes_with_errors(A, scale)
+    unstable = distance_to_stability(modes, time) >= -errors
+    if not unstable.any():
+        return None
+    Z = invariant_subspace(A, lambda mode: nearest(mode, modes[unstable]) <= nearest(mode, modes[~unstable]))
+    T, tol = Z.T @ A @ Z, len(A) * RANK_RTOL * scale
+    K = unseen_subspace(T, C @ Z, tol, tol)
+    hidden = np.linalg.eigvals(K.T @ T @ K)
+    return complex(hidden[np.argmax(distance_to_stability(hidden, time))]) if len(hidden) else None
+
+
+def _modes_with_errors(A: Matrix, scale: float) -> tuple[Any, Any]:
+    """Return the eigenvalues and bounds on their errors, eps |A| / |y*x| with left and right eigenvectors y and x."""
+    from scipy.linalg import eig
+
+    modes, left, right = cast(tuple[Any, Any, Any], eig(A, left=True, right=True))
+    angles = np.abs(np.sum(left.conj() * right, axis=0))
+    rounding = len(A) * RANK_RTOL
+    return modes, scale * np.minimum(MODE_RTOL, rounding / np.maximum(angles, rounding))
 
 
 def _balanced_pair(A: Matrix, C: Matrix) -> tuple[Matrix, Matrix]:
     """Return T^-1 A T and C T with rows of C of the size of A."""
-    from scipy.linalg import matrix_balance
-
-    balanced, (scaling, _) = matrix_balance(A, permute=False, separate=True)
+    scaling = balancing(A)
+    balanced = A * scaling / scaling[:, None]
     C = C * scaling
     sizes = np.abs(C).max(axis=1, keepdims=True)
     size = np.linalg.norm(balanced, 2) or 1.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from derive.numeric.boundary import Boundary, unexcited_boundary
 from derive.numeric.extended import cholesky, forward
-from derive.numeric.modes import Matrix, Time
+from derive.numeric.modes import Matrix, Time, balancing
 from derive.numeric.plant import Plant
 
 __all__ = ["NormalForm", "normal_form"]
@@ -41,6 +41,10 @@ class NormalForm:
         F, W = self.A - self.N @ self.C, self.W - self.N @ self.N.T
         return F.astype(float), self.C.astype(float), W.astype(float)
 
+    def scaled(self, P: Matrix) -> Matrix:
+        """Return the covariance of the scaled states."""
+        return P / np.outer(self.scaling, self.scaling)
+
     def unscaled(self, P: Matrix) -> Matrix:
         """Return the covariance of the original states."""
         return P * np.outer(self.scaling, self.scaling)
@@ -69,10 +73,8 @@ def normal_form(plant: Plant) -> NormalForm:
 
 def _balancing(F: Matrix, C: Matrix, W: Matrix) -> Matrix:
     """Return powers of two t, x = t x_scaled, that balance the Hamiltonian matrix [[F', C'C], [W, F]]."""
-    from scipy.linalg import matrix_balance
-
     n = len(F)
     hamiltonian = np.abs(np.block([[F.T, C.T @ C], [W, F]]).astype(float))
     np.fill_diagonal(hamiltonian, 0.0)
-    _, (s, _) = matrix_balance(hamiltonian, separate=True, permute=False)
+    s = balancing(hamiltonian)
     return np.exp2(np.round((np.log2(s[n:]) - np.log2(s[:n])) / 2))

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.errors import InputError
-from derive.numeric.flow import flow_over, one_step
+from derive.numeric.flow import Flow, flow_over, one_step
 from derive.numeric.modes import Matrix
-from derive.numeric.normal import normal_form
+from derive.numeric.normal import NormalForm, normal_form
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import RiccatiSolution, solve_riccati
 
@@ -17,6 +17,12 @@ __all__ = ["Response", "covariance_ellipse", "covariance_response"]
 
 SETTLING = 6.0
 """Time constants of the slowest mode that a response covers unless told otherwise."""
+
+GROWTH = 4.0
+"""An unstable mode grows by exp(GROWTH) at most in one application of the flow, which loses that factor squared."""
+
+SUBSTEPS = 100
+"""Most applications of the flow between two points."""
 
 STEPS = 10, 400
 """Least and largest number of steps of a discrete response."""
@@ -52,10 +58,12 @@ def covariance_response(plant: Plant, points: int = 200, horizon: float | None =
         plant: with P0, or without: then the standard deviations start at twice the steady ones, or at one where those
             vanish, without correlation.
         points: number of times, continuous time only.
-        horizon: last time [s], or number of steps; unless given, six time constants of the slowest mode.
+        horizon: last time [s], or number of steps; unless given, six time constants of the slowest mode, or what the
+            fastest unstable mode allows.
 
     Raises:
-        InputError: the horizon is not positive, or there are fewer than two points.
+        InputError: the horizon is not positive, or too long for an unstable mode; there are fewer than two points;
+            the covariance leaves double precision.
 
     Source: A. E. Bryson, Y.-C. Ho, Applied Optimal Control, 1975, chapter 12, for the equations.
     """
@@ -63,19 +71,15 @@ def covariance_response(plant: Plant, points: int = 200, horizon: float | None =
         raise InputError(f"response: expected 2 points or more and a positive horizon, got {points} and {horizon}")
     solution = solve_riccati(plant)
     form = normal_form(plant)
-    if plant.is_continuous:
-        times = np.linspace(0.0, _settling(solution, plant) if horizon is None else horizon, points)
-        flow = flow_over(form, times[1])
-    else:
-        steps = np.clip(np.ceil(_settling(solution, plant)), *STEPS) if horizon is None else np.ceil(horizon)
-        times = np.arange(int(steps) + 1) * (plant.dt or 1.0)
-        flow = one_step(form)
-    scales = np.outer(form.scaling, form.scaling)
-    P = (_start(solution.P) if plant.P0 is None else plant.P0) / scales
-    path = [P]
-    for _ in times[1:]:
-        path.append(flow.after(path[-1]))
-    covariances = np.array([form.unscaled(P) for P in path]).astype(float)
+    try:
+        with np.errstate(all="ignore"):  # an overflow is answered below
+            times, flow, substeps = _course(plant, form, solution, points, horizon)
+            path = _path(flow, form.scaled(_start(plant, solution)), times, substeps)
+    except np.linalg.LinAlgError:
+        times, path = np.zeros(1), np.full((1, plant.n, plant.n), np.nan)
+    covariances = form.unscaled(path)
+    if not np.isfinite(covariances).all():
+        raise InputError("response: expected numbers within double precision, got more; choose other units")
     return Response(
         times=times,
         covariances=covariances,
@@ -84,6 +88,44 @@ def covariance_response(plant: Plant, points: int = 200, horizon: float | None =
         open_loop=np.linalg.eigvals(plant.A),
         closed_loop=solution.closed_loop,
     )
+
+
+def _course(
+    plant: Plant, form: NormalForm, solution: RiccatiSolution, points: int, horizon: float | None
+) -> tuple[Matrix, Flow, int]:
+    """Return the times, the flow from one to the next or a part of it, and the number of parts."""
+    last = _settling(solution, plant) if horizon is None else horizon
+    if not plant.is_continuous:
+        steps = int(np.clip(np.ceil(last), *STEPS)) if horizon is None else int(np.ceil(last))
+        return np.arange(steps + 1) * (plant.dt or 1.0), one_step(form), 1
+    growth = max(0.0, float(np.linalg.eigvals(form.uncorrelated()[0]).real.max()))
+    longest = (points - 1) * SUBSTEPS * GROWTH / growth if growth else np.inf
+    if horizon is not None and horizon > longest:
+        raise InputError(
+            f"response: expected a horizon of at most {longest:.3g} s for a mode that grows at {growth:.3g} 1/s, "
+            f"got {horizon:.3g}; shorten it or ask for more points"
+        )
+    times = np.linspace(0.0, min(last, longest), points)
+    substeps = int(np.ceil(max(1.0, times[1] * growth / GROWTH)))
+    return times, flow_over(form, times[1] / substeps), substeps
+
+
+def _path(flow: Flow, P: Matrix, times: Matrix, substeps: int) -> Matrix:
+    """Return the covariances at all times (k, n, n)."""
+    path = [P]
+    for _ in times[1:]:
+        for _ in range(substeps):
+            P = flow.after(P)
+        path.append(P)
+    return np.array(path)
+
+
+def _start(plant: Plant, solution: RiccatiSolution) -> Matrix:
+    """Return P0, or four times the steady variances, one where they vanish."""
+    if plant.P0 is not None:
+        return plant.P0
+    variances = np.diag(solution.P)
+    return np.diag(np.where(variances > 0, 4 * variances, 1.0))
 
 
 def covariance_ellipse(P: Matrix, first: int = 0, second: int = 1, size: float = 1.0, points: int = 181) -> Matrix:
@@ -101,11 +143,6 @@ def covariance_ellipse(P: Matrix, first: int = 0, second: int = 1, size: float =
     angle = np.linspace(0.0, 2 * np.pi, points)
     axes = directions * np.sqrt(np.maximum(variances, 0.0))
     return size * np.stack([np.cos(angle), np.sin(angle)], axis=1) @ axes.T
-
-
-def _start(steady: Matrix) -> Matrix:
-    variances = np.diag(steady)
-    return np.diag(np.where(variances > 0, 4 * variances, 1.0))
 
 
 def _settling(solution: RiccatiSolution, plant: Plant) -> float:

@@ -42,7 +42,7 @@ def solve_scalar(plant: Plant) -> ScalarSolution:
         plant: n = l = 1, V > 0, W V >= N^2, C != 0 unless A is stable.
 
     Raises:
-        InputError: the plant is not scalar, or its numbers leave the range of double precision.
+        InputError: the plant is not scalar.
 
     Source: S. Fang, H. Ishii, J. Chen, K. H. Johansson, arXiv:1807.08604 (2018), corollary 2, for N = 0 and C != 0 in
         continuous time.
@@ -57,10 +57,7 @@ def solve_scalar(plant: Plant) -> ScalarSolution:
         raise InputError(f"plant: expected one state and one output, got {plant.n} and {plant.l}; use solve_riccati")
     A, C, W, V, N = (Fraction(float(X[0, 0])) for X in (plant.A, plant.C, plant.W, plant.V, plant.N))
     F, q, g = A - N * C / V, max(W - N**2 / V, Fraction(0)), C**2 / V
-    try:
-        P, loop = _continuous(F, q, g) if plant.is_continuous else _discrete(F, q, g)
-    except OverflowError:
-        raise InputError("plant: expected C^2/V within double precision, got more; rescale x or y") from None
+    P, loop = _continuous(F, q, g) if plant.is_continuous else _discrete(F, q, g)
     p = Fraction(P)
     gain = (p * C + N) / V if plant.is_continuous else (A * p * C + N) / (C * p * C + V)
     stable = loop < 0 if plant.is_continuous else abs(loop) < 1

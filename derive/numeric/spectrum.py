@@ -115,9 +115,10 @@ def hamiltonian_route(plant: Plant) -> HamiltonianResult:
         pencil = np.block([[F.T, zero], [-W, one]]), np.block([[one, G], [zero, F]])
         numerator, denominator = np.asarray(eigvals(*pencil, homogeneous_eigvals=True))
         stable = np.argsort(np.arctan2(np.abs(numerator), np.abs(denominator)))[: len(F)]
-        modes = numerator[stable] / denominator[stable]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            modes = numerator[stable] / denominator[stable]
         value = _log_det_by_modes(_Spectrum.of(form), modes) + float(np.linalg.slogdet(plant.V)[1])
-    split = bool(np.all(distance_to_stability(modes, plant.time) < 0))
+    split = np.isfinite(value) and bool(np.all(distance_to_stability(modes, plant.time) < 0))
     return HamiltonianResult(value if split else float("nan"), modes)
 
 

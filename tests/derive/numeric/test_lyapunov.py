@@ -95,6 +95,13 @@ def test_a_mode_reads_like_a_number(mode, text):
     assert format_mode(mode) == text
 
 
+def test_slow_modes_that_are_not_seen_are_spared():
+    for A, time in (([-1e-3, 1e6], "continuous"), ([0.999999, 1e6], "discrete")):
+        F, C = np.diag(A), np.array([[0.0, 1.0]])
+        gain = stabilising_gain(F, C, time)
+        assert distance_to_stability(np.linalg.eigvals(F - gain @ C), time).max() < 0
+
+
 def test_no_gain_stabilises_what_is_not_seen():
     for A, time in (([[1.0]], "continuous"), ([[2.0]], "discrete")):
         assert np.isnan(stabilising_gain(np.array(A), np.zeros((1, 1)), time)).all()

@@ -121,6 +121,7 @@ REFUSED = {
     "NaN": ({"A": [[0, 1], [float("nan"), 0]]}, "A[2][1]: expected a finite number, got nan; remove or replace it"),
     "infinity": ({"W": [[np.inf, 0], [0, 1]]}, "W[1][1]: expected a finite number, got inf; remove or replace it"),
     "too large": ({"W": [[10**400, 0], [0, 1]]}, "W[1][1]: expected a finite number, got inf; remove or replace it"),
+    "out of range": ({"V": 1e-60}, "V: expected 0 or a size between 1e-50 and 1e+50, got 1e-60; choose other units"),
     "asymmetric W": (
         {"W": [[1, 0.1], [0.2, 1]]},
         "W: expected a symmetric matrix, got 0.1 at (1, 2) and 0.2 at (2, 1); make them equal",
@@ -334,6 +335,26 @@ def test_detectability_does_not_depend_on_the_unit_of_time(rate):
     assert plant_from_mapping({**data, "A": rate * np.array([[0.1, 1.0], [0.0, 0.2]])}).n == 2
     with pytest.raises(InputError, match="is unobservable"):
         plant_from_mapping({**data, "A": rate * np.array([[0.1, 0.0], [0.0, 0.2]])})
+
+
+@pytest.mark.parametrize("time", ["continuous", "discrete"])
+def test_a_stable_mode_may_hide_beside_a_fast_one(time):
+    fast = [[-1e9, 0], [0, -1]] if time == "continuous" else [[0.5, 1e9], [0, 0.4]]
+    plant = plant_from_mapping({"time": time, "A": fast, "C": [[1, 0]], "W": np.eye(2), "V": 1})
+    assert plant.n == 2
+    unstable = {"time": "continuous", "A": [[-1e9, 0], [0, 1e-3]], "C": [[1, 0]], "W": np.eye(2), "V": 1}
+    with pytest.raises(InputError, match=r"mode 0.001 is unobservable"):
+        plant_from_mapping(unstable)
+
+
+def test_a_double_mode_on_the_boundary_must_be_seen():
+    T = np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
+    A = T @ np.array([[0, 1, 0], [0, 0, 0], [0, 0, -1.0]]) @ T.T
+    data = {"time": "continuous", "A": A, "W": np.eye(3), "V": 1}
+    assert plant_from_mapping({**data, "C": [[1, 0, 1]] @ T.T}).n == 3
+    for hidden in ([[0, 0, 1]], [[0, 1, 1]]):
+        with pytest.raises(InputError, match=r"\(A, C\): not detectable: mode .* is unobservable"):
+            plant_from_mapping({**data, "C": hidden @ T.T})
 
 
 def test_rounding_is_not_taken_for_a_fault():

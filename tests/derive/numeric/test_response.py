@@ -93,6 +93,18 @@ def test_a_stiff_plant_takes_no_small_steps():
     np.testing.assert_allclose(response.covariances[-1], response.steady, rtol=1e-9, atol=1e-12)
 
 
+def test_a_fast_unstable_mode_beside_a_slow_one():
+    """exp(5 h) of one step of the response, h = 80 s, is 1e174; the covariance keeps its digits."""
+    plant = continuous(A=np.diag([5, -1e-4]), C=[[1, 1]], W=np.diag([0, 1e-12]), V=1, P0=np.diag([1e-3, 1e-8]))
+    response = covariance_response(plant)
+    assert response.times[1] == pytest.approx(80)
+    np.testing.assert_allclose(response.covariances[-1, 0, 0], 10, rtol=1e-6)
+    slow = 5e-9 + 5e-9 * np.exp(-2e-4 * response.times)
+    np.testing.assert_allclose(response.covariances[:, 1, 1], slow, rtol=1e-3)
+    with pytest.raises(InputError, match=r"at most 1.59e\+04 s for a mode that grows at 5 1/s, got 1e\+09; shorten"):
+        covariance_response(plant, horizon=1e9)
+
+
 def test_steps_are_counted_in_seconds_where_the_period_is_known():
     response = covariance_response(discrete(A=0.5, C=1, Q=1, R=1, dt=0.1), horizon=4)
     np.testing.assert_allclose(response.times, [0, 0.1, 0.2, 0.3, 0.4])
@@ -111,6 +123,12 @@ def test_a_horizon_must_be_positive():
         covariance_response(example_plant(), horizon=0)
     with pytest.raises(InputError, match="expected 2 points or more and a positive horizon, got 1 and None"):
         covariance_response(example_plant(), points=1)
+
+
+def test_numbers_without_end_are_refused():
+    plant = discrete(A=[[0, 1e40], [1e40, 0]], C=[[1e-50, 0]], Q=np.eye(2), R=1e50)
+    with pytest.raises(InputError, match="expected numbers within double precision, got more; choose other units"):
+        covariance_response(plant)
 
 
 def test_an_ellipse_is_a_level_set():

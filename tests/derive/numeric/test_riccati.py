@@ -12,7 +12,7 @@ from derive.numeric.extended import cholesky, divided, forward
 from derive.numeric.modes import distance_to_stability
 from derive.numeric.plant import Plant, example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from tests.derive.numeric.plants import OSCILLATOR, STABILISING, STRONG, continuous, random_plant
+from tests.derive.numeric.plants import NOTHING, OSCILLATOR, STABILISING, STRONG, continuous, random_plant
 
 TIMES = ["continuous", "discrete"]
 
@@ -156,6 +156,16 @@ def test_a_mode_near_the_boundary_is_not_on_it():
     excited = solve_riccati(continuous(A=OSCILLATOR, C=[[1, 0]], W=np.diag([0, 1e-8]), V=1))
     assert excited.status == "stabilising"
     np.testing.assert_allclose(np.trace(excited.P), 2e-4, rtol=1e-4)
+
+
+def test_a_slow_mode_beside_a_fast_one_is_not_on_the_boundary():
+    """Relative to the fast mode, 1e9 times faster, the slow ones look as if they were."""
+    unstable = solve_riccati(continuous(A=np.diag([1e-3, -1e9]), C=[[1, 1]], W=NOTHING, V=1))
+    assert unstable.status == "stabilising"
+    np.testing.assert_allclose(unstable.P, np.diag([2e-3, 0]), rtol=1e-12, atol=1e-18)
+    stable = solve_riccati(continuous(A=np.diag([-1e-3, -1e9]), C=[[1, 1]], W=NOTHING, V=1))
+    assert stable.status == "stabilising"
+    np.testing.assert_array_equal(stable.P, 0)
 
 
 def test_faint_noise_is_noise():
