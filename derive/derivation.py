@@ -14,6 +14,7 @@ from typing import Literal
 from derive.context import DeclaredInverse, Theory, adopt
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
+from derive.real import NEGATION, Sign
 from derive.rules import (
     Comparison,
     Grid,
@@ -24,6 +25,7 @@ from derive.rules import (
     replay_uniqueness,
     variation,
 )
+from derive.scalars import RULES, check_scalar, scalar_claims
 from derive.terms import (
     Dot,
     Equation,
@@ -41,7 +43,10 @@ from derive.terms import (
     lower_trace,
 )
 
-Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain"]
+Rule = Literal[
+    "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
+    "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
+]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
@@ -55,6 +60,7 @@ class Proof:
     comparison: Comparison | None = None
     uniqueness: Uniqueness | None = None
     links: tuple[str, ...] = ()
+    sign: Sign | None = None
 
     def relations(self) -> set[str]:
         """Return the names of the relations and facts that the proof uses."""
@@ -69,7 +75,10 @@ class Proof:
             names |= {self.comparison.stable, self.comparison.forcing}
         if self.uniqueness:
             addends += self.uniqueness.rate_terms + self.uniqueness.initial_terms
-        return names | {t.relation for t in addends}
+        if self.sign:
+            addends += self.sign.terms
+            names |= {fact for product in self.sign.products for fact in product.facts}
+        return (names | {t.relation for t in addends}) - {NEGATION}
 
 
 @dataclass(frozen=True)
@@ -97,6 +106,8 @@ def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificat
     agree. trace: under the trace. gradient: the directional derivative of the trace along H is tr(G' H).
     """
     lhs, rhs = statement.lhs, statement.rhs
+    if rule in ("scalar", "same rate"):
+        return [Certificate(claim) for claim in scalar_claims(statement, rule, reading)]
     if rule == "gradient":
         return [Certificate(_gradient_claim(lhs, rhs, reading), trace=True)]
     if rule == "trace":
@@ -151,6 +162,11 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     context, proof = reading.context, step.proof
     if step.rule == "chain":
         _check_chain(step, earlier)
+    elif step.rule in RULES:
+        links = [earlier[name].statement for name in proof.links if name in earlier]
+        if len(links) != len(proof.links):
+            raise Rejected("it rests on a step that is not proved before it")
+        check_scalar(step.statement, step.rule, proof.sign, links, reading)
     elif step.rule in ("positivity", "comparison"):
         grid = order_claim(step.statement, reading)
         if step.rule == "positivity" and proof.positivity:

@@ -19,6 +19,7 @@ LECTURES = {
     "covariance": "derive.theory.covariance",
     "luenberger": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
+    "scalar": "derive.theory.scalar",
     "duality": "derive.theory.duality",
 }
 THEORIES = {
@@ -26,6 +27,7 @@ THEORIES = {
     "covariance-ct": "derive.theory.covariance",
     "luenberger-dt": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
+    "scalar": "derive.theory.scalar",
     "duality": "derive.theory.duality",
     "lqr-dt": "derive.theory.regulator:discrete",
     "lqr-ct": "derive.theory.regulator:continuous",
