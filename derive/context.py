@@ -101,6 +101,7 @@ class Theory:
     parameters: set[str] = field(default_factory=set[str])
     nonnegative: set[str] = field(default_factory=set[str])
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
+    speaks_of: dict[str, frozenset[str]] = field(default_factory=dict)  # scalars in a declaration
 
     def matrix(
         self,
@@ -264,8 +265,11 @@ class Theory:
 
     def _early(self, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
         """Tell whether a declaration speaks of a scalar whose definition is not adopted yet."""
-        used = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol) and n.scalar}
-        return any(
+        if item.name not in self.speaks_of:
+            names = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol) and n.scalar}
+            self.speaks_of[item.name] = frozenset(names)
+        used = self.speaks_of[item.name]
+        return bool(used) and any(
             isinstance(d.statement.lhs, Symbol) and d.statement.lhs.name in used
             for d in self.declared.values()
             if isinstance(d, Declared) and d.kind == "definition" and d is not item and d.name not in reading.adopted

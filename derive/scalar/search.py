@@ -19,8 +19,13 @@ from derive.rules import Fact
 __all__ = ["Ideal", "closure", "prove_identity", "prove_sign"]
 
 
-def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly]) -> dict[str, Poly]:
-    """Return the defining relations of all atoms that occur in the polynomials, directly or within atoms."""
+def closure(
+    polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], expand: bool = True
+) -> dict[str, Poly]:
+    """Return the defining relations of all atoms that occur in the polynomials, directly or within atoms.
+
+    Without ``expand`` definitions are left out, so that a scalar stays what it is called.
+    """
     found, waiting = dict[str, Poly](), {s for p in polys for s in scalars_of(p)}
     names = {a.name: name for name, a in _relations_of(real, relations).items()}
     seen = set[str]()
@@ -28,7 +33,7 @@ def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly]) ->
         s = waiting.pop()
         seen.add(s)
         atom = real.atoms.get(s)
-        if atom is not None:
+        if atom is not None and (expand or atom.kind != "defined"):
             waiting |= scalars_of(atom.of) - seen
             if s in names:
                 found[names[s]] = relations[names[s]]
@@ -163,8 +168,11 @@ def prove_sign(
     ideal = Ideal(relations, [*order, *sorted(scalars_of(claim) - set(order))])
     while len(ideal.basis) < 40 and ideal.grow():
         pass
-    for d in range(1, degree + 1):
-        found = _contradiction(list(_products(facts, squares, d)), facts, ideal)
+    whole = tuple(name for name, fact in facts.items() if name != NEGATION and fact.kind != "nonzero")
+    direct = [SignProduct(Fraction(1), names, s) for names in ((), whole) for s in ((), *((q,) for q in squares))]
+    direct += [SignProduct(Fraction(1), (NEGATION,))] if against else []
+    for d in range(degree + 1):
+        found = _contradiction(list(_products(facts, squares, d)) if d else direct, facts, ideal)
         if found:
             total = constant(0)
             for product in found:

@@ -42,8 +42,10 @@ class ScalarBuilder(Builder):
         """Find the addends of a certificate from the named relations and the atoms that occur."""
         relations = self.reading.context.relations
         named = {r: relations[r] for name in using for r in names_of(name, relations)}
+        near = {**named, **closure([claim, *named.values()], self.reading.real, relations, expand=False)}
         allowed = {**named, **closure([claim, *named.values()], self.reading.real, relations)}
-        found = prove_identity(claim, allowed, self.order())
+        found = prove_identity(claim, near, self.order(), 0.5) if len(near) < len(allowed) and named else None
+        found = found or prove_identity(claim, allowed, self.order())
         if found is None:
             raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(allowed) or 'nothing'}")
         return found
@@ -64,6 +66,7 @@ class ScalarBuilder(Builder):
         number: str = "",
         source: str = "",
         degree: int = 3,
+        alone: bool = False,
         show: bool = True,
     ) -> Step:
         """Prove lhs >=, > or ≠ rhs: were it false, products of nonnegative numbers would add up to less than zero."""
@@ -79,7 +82,7 @@ class ScalarBuilder(Builder):
         facts = {f: context.facts[f] for f in using}
         named = {r: context.relations[r] for n in identities for r in names_of(n, context.relations)}
         polys = [claim, *extra, *named.values(), *(f.matrix[0][0] for f in facts.values())]
-        allowed = {**named, **closure(polys, real, context.relations)}
+        allowed = named if alone else {**named, **closure(polys, real, context.relations)}
         known = {s for p in (*polys, *allowed.values()) for s in scalars_of(p)}
         order = [s for s in self.order() if s in known]
         found = prove_sign(claim, statement.relation, facts, allowed, order, extra, degree)

@@ -10,7 +10,7 @@ from derive.terms import Equation, Glyph, Number, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 
-FOUR = Number(Fraction(4))
+RECIPROCAL = "a reciprocal has the sign of its number"
 
 
 def recursion(A: Term, C: Term, Q: Term, R: Term, P: Term) -> Term:
@@ -44,7 +44,8 @@ def _declare_roots(t: Theory, Q: Term, R: Term, tail: str, sub: str, A: Term | N
     for name, sign, sup in (("M", T, ""), ("M-", -T, "-")):
         M = t.scalar(name + tail, Glyph("P", sub=sub, sup="d" + sup), meaning="steady covariance of the predicted state")
         t.define(name + tail, M, Quotient(beta + sign, 2 * square(C)))
-        t.atom("reciprocal", square(C) * M + R, f"C^2 {name} + R > 0" + tail, f"1/(C^2 {name}+R)" + tail)
+    upper = t.symbols["M" + tail]
+    t.atom("reciprocal", square(C) * upper + R, "C^2 M + R > 0" + tail, "1/(C^2 M+R)" + tail)
 
 
 def _declare_cases(t: Theory) -> None:
@@ -89,11 +90,15 @@ def _declare_recursion(t: Theory) -> None:
     for name, s in (("", sigma), ("'", after)):
         over, under = numerator(t, s), denominator(t, s)
         if not name:
-            t.assume("N_k", over, "≥", text="the induction hypothesis", case=True)
-            t.assume("D_k", under, ">", text="the induction hypothesis", case=True)
-        t.atom("reciprocal", under, f"D_k{name}", f"1/D_k{name}")
-        P = t.scalar(f"P_k{name}", Glyph("P", sub="k+1" if name else "k"), meaning="covariance of the predicted state")
-        t.define(f"P_k{name} in closed form", P, Quotient(over, under))
+            t.assume("N_k >= 0", over, "≥", text="the induction hypothesis", case=True)
+            t.assume("D_k > 0", under, ">", text="the induction hypothesis", case=True)
+        sub = "k+1" if name else "k"
+        n, d = (t.scalar(letter + sub, Glyph(letter, sub=sub)) for letter in "nd")
+        t.define(f"n{name}", n, over)
+        t.define(f"d{name}", d, under)
+        t.atom("reciprocal", d, f"d{name} > 0", f"1/d{name}")
+        P = t.scalar(f"P_k{name}", Glyph("P", sub=sub), meaning="covariance of the predicted state")
+        t.define(f"P_k{name}", P, Quotient(n, d))
     t.atom("reciprocal", square(C) * t.symbols["P_k"] + R, "C^2 P_k + R > 0", "1/(C^2 P_k+R)")
     t.assume("σ = 0", sigma, "=", text="the empty sum", case=True)
 
@@ -178,7 +183,7 @@ def _derive_stability(b: ScalarBuilder) -> None:
             squares=[root, C],
         )  # fmt: skip
     b.sign(
-        "1/Σ > 0", Equation(Quotient(ONE, sigma), ">", ZERO), "a reciprocal has the sign of its number",
+        "1/Σ > 0", Equation(Quotient(ONE, sigma), ">", ZERO), RECIPROCAL,
         ["C^2 M + R > 0"],
     )  # fmt: skip
     b.state(
@@ -215,7 +220,7 @@ def _derive_cases(b: ScalarBuilder) -> None:
     b.say("A form without a division by ", C, ":")
     b.given("T > b", "m")
     b.sign(
-        "1/(T-b) > 0", Equation(Quotient(ONE, T - s["b"]), ">", ZERO), "a reciprocal has the sign of its number", ["T > b"]
+        "1/(T-b) > 0", Equation(Quotient(ONE, T - s["b"]), ">", ZERO), RECIPROCAL, ["T > b"]
     )
     b.sign("m >= 0", Equation(m, "≥", ZERO), "of nonnegative numbers", ["1/(T-b) > 0", "Q >= 0", "R > 0"])
     b.sign("C^2 m + R > 0", Equation(square(C) * m + R, ">", ZERO), "an innovation covariance", ["m >= 0", "R > 0"], squares=[C])
@@ -244,7 +249,7 @@ def _derive_cross(b: ScalarBuilder) -> None:
     A, C, Q, R, N, F, q, M = (s[k] for k in ("A", "C", "Q", "R", "S_d", "F_d", "q_d", "M_S"))
     b.heading("Noises that have a part in common, in discrete time")
     b.given("S^2 <= QR", "F_d", "q_d")
-    b.sign("1/R > 0", Equation(Quotient(ONE, R), ">", ZERO), "a reciprocal has the sign of its number", ["R > 0"])
+    b.sign("1/R > 0", Equation(Quotient(ONE, R), ">", ZERO), RECIPROCAL, ["R > 0"])
     b.sign("q_d >= 0", Equation(q, "≥", ZERO), "a joint covariance", ["S^2 <= QR", "1/R > 0"])
     b.given("b_S")
     _signs(b, q, "q_d >= 0", "_S")
@@ -272,33 +277,42 @@ def _derive_recursion(b: ScalarBuilder) -> None:
     b.given("σ'")
     b.state("characteristic equation", Equation(lam * (ONE + rho), "=", square(A) * R + square(C) * Q + R), "T^2 = (trace)^2 - 4 det")
     b.state("the power as a sum", Equation(ONE - (ONE - rho) * after, "=", rho * (ONE - (ONE - rho) * sigma)), "so it is ρ^k, by induction")
+    n, d, n_next, d_next = (s[k] for k in ("nk", "dk", "nk+1", "dk+1"))
     b.say("The claim is")
-    b.given("P_k in closed form", "N_k", "D_k")
+    b.given("n", "d", "N_k >= 0", "D_k > 0")
+    b.sign("d > 0", Equation(d, ">", ZERO), "the induction hypothesis", ["D_k > 0"])
+    b.sign("n >= 0", Equation(n, "≥", ZERO), "the induction hypothesis", ["N_k >= 0"])
+    b.given("P_k")
     b.say("It holds at the start,")
     b.state("induction start", Equation(P, "=", start), "the empty sum", ["σ = 0"])
-    b.sign("numerator at the start", Equation(numerator(t, sigma), "≥", ZERO), "the empty sum", ["P0 >= 0", "λ > 0"], identities=["σ = 0"])
-    b.sign("denominator at the start", Equation(denominator(t, sigma), ">", ZERO), "the empty sum", ["λ > 0"], identities=["σ = 0"])
+    b.sign("numerator at the start", Equation(n, "≥", ZERO), "the empty sum", ["P0 >= 0", "λ > 0"], identities=["σ = 0"])
+    b.sign("denominator at the start", Equation(d, ">", ZERO), "the empty sum", ["λ > 0"], identities=["σ = 0"])
     b.say("and from each step to the next:")
-    b.sign("1/λ > 0", Equation(Quotient(ONE, lam), ">", ZERO), "a reciprocal has the sign of its number", ["λ > 0"])
+    b.given("n'", "d'")
+    b.sign("1/λ > 0", Equation(Quotient(ONE, lam), ">", ZERO), RECIPROCAL, ["λ > 0"])
+    upper, lower = (square(A) * R + square(C) * Q) * n + Q * R * d, square(C) * n + R * d
+    b.state("next denominator", Equation(lam * d_next, "=", lower), "the lower row of the Moebius matrix")
+    b.state("next numerator", Equation(lam * n_next, "=", upper), "the upper row")
+    b.sign("lower row", Equation(lower, ">", ZERO), "as the induction hypothesis says", ["n >= 0", "d > 0", "R > 0"], squares=[C])
+    b.sign("upper row", Equation(upper, "≥", ZERO), "as the induction hypothesis says",
+           ["n >= 0", "d > 0", "R > 0", "Q >= 0"], squares=[A, C])  # fmt: skip
+    for name, x, row in (("d' > 0", d_next, "lower row"), ("n' >= 0", n_next, "upper row")):
+        b.sign(
+            name, Equation(x, ">" if row == "lower row" else "≥", ZERO), "divide by λ", [row, "1/λ > 0"],
+            identities=["next denominator" if row == "lower row" else "next numerator", "1/λ"], alone=True,
+        )  # fmt: skip
+    b.given("P_k'")
+    b.sign("1/d > 0", Equation(Quotient(ONE, d), ">", ZERO), RECIPROCAL, ["d > 0"], identities=["1/d"], alone=True)
+    b.sign("P_k >= 0", Equation(P, "≥", ZERO), "a quotient of such", ["n >= 0", "1/d > 0"], identities=["P_k"], alone=True)
+    b.sign("C^2 P_k + R > 0", Equation(square(C) * P + R, ">", ZERO), "an innovation covariance", ["P_k >= 0", "R > 0"],
+           squares=[C], alone=True)  # fmt: skip
     b.state(
-        "next denominator",
-        Equation(denominator(t, after), "=", Quotient(square(C) * numerator(t, sigma) + R * denominator(t, sigma), lam)),
-        "the lower row of the Moebius matrix",
-    )
-    b.state(
-        "next numerator",
-        Equation(numerator(t, after), "=", Quotient((square(A) * R + square(C) * Q) * numerator(t, sigma) + Q * R * denominator(t, sigma), lam)),
-        "the upper row",
-    )
-    b.sign("D_k'", Equation(denominator(t, after), ">", ZERO), "the lower row", ["N_k", "D_k", "1/λ > 0", "R > 0"], identities=["next denominator"], squares=[C])
-    b.sign("N_k'", Equation(numerator(t, after), "≥", ZERO), "the upper row", ["N_k", "D_k", "1/λ > 0", "R > 0", "Q >= 0"], identities=["next numerator"], squares=[A, C], degree=4)
-    b.sign("1/D_k > 0", Equation(Quotient(ONE, denominator(t, sigma)), ">", ZERO), "a reciprocal has the sign of its number", ["D_k"])
-    b.sign("P_k >= 0", Equation(P, "≥", ZERO), "a quotient of such", ["N_k", "1/D_k > 0"])
-    b.sign("C^2 P_k + R > 0", Equation(square(C) * P + R, ">", ZERO), "an innovation covariance", ["P_k >= 0", "R > 0"], squares=[C])
-    b.state("induction step", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), "both rows", ["next numerator", "next denominator"])
+        "induction step", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), "both rows",
+        ["next numerator", "next denominator", "P_k", "P_k'"],
+    )  # fmt: skip
     b.say("The distance to the steady state is multiplied by the decay in each step, up to a denominator that stays bounded:")
+    b.state("steady innovation covariance", Equation(lam, "=", square(C) * M + R), "insert the root")
     b.state(
         "distance in discrete time",
-        Equation(P - M, "=", Quotient((start - M) * lam * (ONE - (ONE - rho) * sigma), denominator(t, sigma))),
-        "common denominator",
-    )
+        Equation(P - M, "=", Quotient((start - M) * lam * (ONE - (ONE - rho) * sigma), d)), "common denominator",
+    )  # fmt: skip
