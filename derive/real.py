@@ -44,8 +44,22 @@ class Real:
     limits: Mapping[tuple[str, str, Scalars], Poly] = field(default_factory=dict[tuple[str, str, Scalars], Poly])
 
     def find(self, kind: str, of: Poly) -> str | None:
-        """Return the name of an atom."""
-        return next((a.name for a in self.atoms.values() if (a.kind, a.of) == (kind, of)), None)
+        """Return the name of an atom; definitions in its argument may be written out or not."""
+        same = [a for a in self.atoms.values() if a.kind == kind]
+        exact = next((a.name for a in same if a.of == of), None)
+        wanted = self.unfold(of)
+        return exact or next((a.name for a in same if self.unfold(a.of) == wanted), None)
+
+    def unfold(self, poly: Poly) -> Poly:
+        """Write out the definitions in a polynomial."""
+        total = ZERO
+        for (m, _), c in poly.terms.items():
+            product = constant(c)
+            for s in m:
+                atom = self.atoms.get(s)
+                product = product * (self.unfold(atom.of) if atom and atom.kind == "defined" else scalar(s))
+            total = total + product
+        return total
 
     def varies(self, name: str, variable: str) -> bool:
         """Tell whether a scalar depends on a variable."""

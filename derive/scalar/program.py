@@ -52,8 +52,6 @@ class Program:
         """Return a function of arrays (broadcast) that returns an array, or a float for numbers."""
         import numpy as np
 
-        blocks = _compiled(self)
-
         def evaluate(*values: Any) -> Any:
             if len(values) != len(self.arguments):
                 raise InputError(f"{self.name}: expected {len(self.arguments)} arguments, got {len(values)}")
@@ -62,10 +60,25 @@ class Program:
             out = np.empty(flat[0].shape)
             with np.errstate(all="ignore"):
                 for i in range(0, out.size, CHUNK):
-                    out[i : i + CHUNK] = blocks(*(a[i : i + CHUNK] for a in flat))
+                    out[i : i + CHUNK] = self._block([a[i : i + CHUNK] for a in flat])
             return out.reshape(arrays[0].shape)[()]
 
         return evaluate
+
+    def _block(self, arrays: Sequence[Any]) -> Any:
+        """Return the values at a few points, the branches from last to first."""
+        import numpy as np
+
+        env = {s.name: a for s, a in zip(self.arguments, arrays, strict=True)}
+        for let in self.lets:
+            env[let.symbol.name] = _fold(let.body, env, numpy_function)
+        result: Any = np.nan
+        for branch in reversed(self.branches):
+            taken: Any = True
+            for condition in branch.conditions:
+                taken = _test(condition, env, numpy_function) & taken
+            result = np.where(taken, _fold(branch.body, env, numpy_function), result)
+        return result
 
     def to_casadi(self) -> Any:
         """Return a CasADi function of scalars."""
@@ -74,14 +87,14 @@ class Program:
         env: dict[str, Any] = {s.name: casadi.SX.sym(identifier(s)) for s in self.arguments}
         inputs = list(env.values())
         for let in self.lets:
-            env[let.symbol.name] = _fold(let.body, env, CASADI)
+            env[let.symbol.name] = _fold(let.body, env, casadi_function)
         result = casadi.SX(float("nan"))
         for branch in reversed(self.branches):
-            tests = [_test(c, env, CASADI) for c in branch.conditions]
+            tests = [_test(c, env, casadi_function) for c in branch.conditions]
             taken = tests[0] if tests else casadi.SX(1)
             for test in tests[1:]:
                 taken = casadi.logic_and(taken, test)
-            result = casadi.if_else(taken, _fold(branch.body, env, CASADI), result)
+            result = casadi.if_else(taken, _fold(branch.body, env, casadi_function), result)
         return casadi.Function(self.name, inputs, [result])
 
     def to_c(self) -> str:
@@ -127,11 +140,8 @@ def _decimal(value: Fraction) -> str:
     return top if value.denominator == 1 else f"({top}/{bottom})"
 
 
-C = Language({"sqrt": "sqrt", "abs": "fabs", "max": "fmax", "exp": "exp", "log": "log"}, _decimal)
-JAVASCRIPT = Language({k: f"Math.{k}" for k in ("sqrt", "abs", "max", "exp", "log")}, _decimal)
-NUMPY = Language(
-    {"sqrt": "np.sqrt", "abs": "np.abs", "max": "np.maximum", "exp": "np.exp", "log": "np.log"}, _decimal
-)
+C = Language({"sqrt": "sqrt", "abs": "fabs", "max": "fmax", "exp": "exp", "log": "log", "expm1": "expm1"}, _decimal)
+JAVASCRIPT = Language({k: f"Math.{k}" for k in ("sqrt", "abs", "max", "exp", "log", "expm1")}, _decimal)
 
 
 def _text(term: Term, language: Language) -> str:
@@ -145,6 +155,8 @@ def _text(term: Term, language: Language) -> str:
             return "0.0"
         case Neg(body):
             return f"(-{_text(body, language)})"
+        case Sum((Number(Fraction(numerator=1, denominator=1)), Neg(Exp(body)))):
+            return f"(-{call['expm1']}({_text(body, language)}))"
         case Sum(addends):
             return "(" + " + ".join(_text(a, language) for a in addends).replace("+ (-", "- (") + ")"
         case Product(factors):
@@ -175,13 +187,20 @@ def _test(condition: Equation, env: Mapping[str, Any] | None, language: Any) -> 
 
 
 # ------------------------------------------------------------------------------------------------ values
-def CASADI(name: str, value: Any) -> Any:  # noqa: N802 - a language like the others
+def casadi_function(name: str, value: Any) -> Any:
     """Apply a function of CasADi."""
     import casadi
 
     if name == "max":
         return casadi.fmax(0, value)
     return getattr(casadi, {"abs": "fabs"}.get(name, name))(value)
+
+
+def numpy_function(name: str, value: Any) -> Any:
+    """Apply a function of NumPy."""
+    import numpy as np
+
+    return np.maximum(0.0, value) if name == "max" else getattr(np, name)(value)
 
 
 def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) -> Any:
@@ -194,6 +213,8 @@ def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) 
             return 0.0
         case Neg(body):
             return -_fold(body, env, apply)
+        case Sum((Number(Fraction(numerator=1, denominator=1)), Neg(Exp(body)))):
+            return -apply("expm1", _fold(body, env, apply))
         case Sum(addends):
             return sum((_fold(a, env, apply) for a in addends[1:]), _fold(addends[0], env, apply))
         case Product(factors):
@@ -210,23 +231,3 @@ def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) 
             return apply(names[type(term)], _fold(body, env, apply))
         case _:
             raise InputError(f"{type(term).__name__}: no expression for it; export a closed form")
-
-
-def _compiled(program: Program) -> Callable[..., Any]:
-    """Return a NumPy function of flat arrays; its source is made of the program's own names only."""
-    import numpy as np
-
-    lines = [f"def block({', '.join(map(identifier, program.arguments))}):"]
-    lines += [f"    {identifier(t.symbol)} = {_text(t.body, NUMPY)}" for t in program.lets]
-    text = "np.nan"
-    for branch in reversed(program.branches):
-        test = " & ".join(f"({_test(c, None, NUMPY)})" for c in branch.conditions) or "True"
-        text = f"np.where({test}, {_text(branch.body, NUMPY)}, {text})"
-    space: dict[str, Any] = {"np": np}
-    exec("\n".join([*lines, f"    return {text}"]), space)  # noqa: S102
-    return space["block"]
-
-
-def described(branches: Sequence[Branch]) -> list[str]:
-    """Return the names of the steps that prove the branches."""
-    return [branch.step for branch in branches]

@@ -126,6 +126,9 @@ def _derive_stability(b: ScalarBuilder) -> None:
     A, C, W, V, g, S, P, other, K, p = (s[k] for k in ("A", "C", "W", "V", "g", "S", "P", "P-", "K", "p"))
     b.heading("Which root stabilises")
     b.given("K", "K-")
+    root = Root(square(A) + Quotient(square(C) * W, V))
+    b.state("P from its definition", Equation(P, "=", Quotient(V * (A + root), square(C))), "insert g")
+    b.state("gain in closed form", Equation(K, "=", Quotient(A + root, C)), "insert P")
     b.state("closed loop", Equation(A - K * C, "=", -S), "insert the gain and the upper root")
     b.state("other closed loop", Equation(A - s["K-"] * C, "=", S), "insert the lower root")
     b.say("So the upper root stabilises, and the lower one never does, unless both are one: ", Equation(S, "=", ZERO))
@@ -146,11 +149,12 @@ def _derive_stability(b: ScalarBuilder) -> None:
     b.state("Riccati equation without a division by C", Equation(riccati(A, W, g, p), "=", ZERO), "S^2 = A^2 + g W")
     b.state("closed loop without a division by C", Equation(A - g * p, "=", -S), "S^2 = A^2 + g W")
     b.state("same covariance", Equation(P, "=", p), "multiply by S - A")
+    b.state("gain without a division by C", Equation(K, "=", Quotient(W * C, V * (S - A))), "insert it")
 
 
 def _derive_cases(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, C, W, V, S, P, p = (s[k] for k in ("A", "C", "W", "V", "S", "P", "p"))
+    A, C, W, V, S, P, K, p = (s[k] for k in ("A", "C", "W", "V", "S", "P", "K", "p"))
     facts = ["S >= 0", "g >= 0", "W >= 0"]
     b.heading("Degenerate cases")
     b.say("Without process noise the decay rate is ", Abs(A), ", whatever the sign of ", A, ".")
@@ -180,12 +184,13 @@ def _derive_cases(b: ScalarBuilder) -> None:
     )
     b.equal("integrator", Equation(P, "=", value), ["P >= 0", "root over |C|"], identities=["squares of the integrator"])
     b.say("Neither noise nor dynamics: both roots are one, and the closed loop stays at the boundary.")
-    b.state("double root", Equation(square(P), "=", ZERO), "S^2 = 0", ["A = 0", "W = 0"])
+    b.state("square of the double root", Equation(square(P), "=", ZERO), "S^2 = 0", ["A = 0", "W = 0"])
+    b.equal("double root", Equation(P, "=", ZERO), ["P >= 0"], identities=["square of the double root"])
+    b.state("double root, gain", Equation(K, "=", ZERO), "insert it", ["double root"])
     b.say("An output that does not see the state leaves a stable state its own covariance:")
     b.given("C = 0", "A < 0")
     b.equal("S = -A", Equation(S, "=", -A), ["S >= 0", "A < 0"], identities=["C = 0"])
     b.state("unseen", Equation(p, "=", -Quotient(W, 2 * A)), "S = -A", ["S = -A"])
-    del facts
 
 
 def _derive_limits(b: ScalarBuilder) -> None:

@@ -208,6 +208,8 @@ def _derive_stability(b: ScalarBuilder) -> None:
         Equation(square(T), "=", (square(A - ONE) * R + square(C) * Q) * (square(A + ONE) * R + square(C) * Q)),
         "so T is zero only for A^2 = 1 without excitation",
     )
+    b.state("M from its definition", Equation(M, "=", Quotient(s["b"] + T, 2 * square(C))), "the upper root")
+    b.state("filtered covariance", Equation(plus, "=", Quotient(M * R, sigma)), "the definition")
     b.state("predictor from filter", Equation(M, "=", square(A) * plus + Q), "the Riccati equation")
     b.state("filter from predictor", Equation(plus, "=", (ONE - s["L_f"] * C) * M), "insert the gain")
     b.state("gains", Equation(L, "=", A * s["L_f"]), "insert both")
@@ -226,8 +228,13 @@ def _derive_cases(b: ScalarBuilder) -> None:
     b.sign("C^2 m + R > 0", Equation(square(C) * m + R, ">", ZERO), "an innovation covariance", ["m >= 0", "R > 0"], squares=[C])
     b.state("discrete Riccati equation without a division by C", Equation(m, "=", recursion(A, C, Q, R, m)), "T^2 - b^2 = 4 C^2 Q R")
     b.state("same discrete covariance", Equation(M, "=", m), "multiply by T - b")
+    b.state(
+        "filtered covariance without a division by C",
+        Equation(s["M+"], "=", Quotient(m * R, square(C) * m + R)), "insert it", ["same discrete covariance"],
+    )  # fmt: skip
     b.sign("C^2 Q + R > 0", Equation(square(C) * Q + R, ">", ZERO), "an innovation covariance", ["Q >= 0", "R > 0"], squares=[C])
     b.equal("T for A = 0", Equation(T, "=", square(C) * Q + R), ["T >= 0", "C^2 Q + R > 0"], identities=["A = 0"])
+    b.state("b in factors", Equation(s["b"], "=", (A - ONE) * (A + ONE) * R + square(C) * Q), "no cancellation at |A| = 1")
     b.state("no memory", Equation(M, "=", Q), "only the last disturbance is left", ["T for A = 0", "A = 0"])
     b.given("Q = 0")
     b.sign("R |A^2 - 1| >= 0", Equation(R * Abs(square(A) - ONE), "≥", ZERO), "a product of nonnegative numbers", ["R > 0", "|A^2-1| ≥ 0"])
@@ -241,7 +248,9 @@ def _derive_cases(b: ScalarBuilder) -> None:
         "zero unless the state is unstable", ["T for Q = 0", "|A^2 - 1|", "Q = 0"],
     )  # fmt: skip
     b.given("A^2 = 1")
-    b.state("double root on the circle", Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["Q = 0", "A^2 = 1"])
+    b.state("square of the double root on the circle", Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["Q = 0", "A^2 = 1"])
+    b.equal("double root on the circle", Equation(M, "=", ZERO), ["M >= 0"], identities=["square of the double root on the circle"])
+    b.state("filtered double root", Equation(s["M+"], "=", ZERO), "insert it", ["double root on the circle"])
 
 
 def _derive_cross(b: ScalarBuilder) -> None:

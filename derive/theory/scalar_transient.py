@@ -47,7 +47,12 @@ def declare(t: Theory) -> None:
     t.assume("not (C W = 0, A > 0, P0 = 0)", floor, ">", case=True,
              text="the state is stable, or excited and seen, or the start is uncertain and seen")  # fmt: skip
     t.atom("reciprocal", floor, "not (C W = 0, A > 0, P0 = 0)", "1/floor")
+    t.atom("reciprocal", ONE + g * s["P0"] * time, "1 + g P0 t > 0", "1/(1+gP0t)")
+    t.assume("S + A > 0", S + A, ">", text="the state is unstable, or excited and seen", case=True)
+    t.atom("reciprocal", S + A, "S + A > 0", "1/(S+A)")
     decay = Exp(-2 * S * time)
+    conjugate = Quotient(g * W, S + A)
+    t.atom("reciprocal", 2 * S * decay + (conjugate + g * s["P0"]) * (ONE - decay), "unstable denominator", "1/unstable")
     t.atom("reciprocal", 2 * S * decay + floor * (ONE - decay), "explicit denominator", "1/explicit")
 
 
@@ -169,13 +174,27 @@ def _derive_limit(b: ScalarBuilder) -> None:
 
 def _derive_special(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, W, g, S, h, P0, P_t, time, decay = (
-        s[k] for k in ("A", "W", "g", "S", "h", "P0", "P0(t)", "t", "t")
-    )
+    A, W, g, S, h, P0, P_t, time = (s[k] for k in ("A", "W", "g", "S", "h", "P0", "P0(t)", "t"))
     b.say("Started without error and without excitation, the error stays zero, whatever the upper root is:")
     b.given("P0 = 0")
     b.state("zero stays zero", Equation(P_t, "=", ZERO), "the numerator vanishes", ["P0 = 0", "W = 0"])
     b.say("Neither dynamics nor excitation: the double root is reached, but not exponentially.")
     b.given("S = 0")
     b.rate("h = t", Equation(h, "=", time), "same derivative, same value at the start", ["S = 0", "decay"])
-    del A, W, g, S, P0, decay
+    b.sign("1 + g P0 t > 0", Equation(ONE + g * P0 * time, ">", ZERO), "one plus nonnegative numbers",
+           ["g >= 0", "P0 >= 0", "t >= 0"])  # fmt: skip
+    b.state(
+        "solution of an integrator", Equation(P_t, "=", Quotient(P0 + W * time, ONE + g * P0 * time)),
+        "h = t", ["h = t", "S = 0", "A = 0"],
+    )  # fmt: skip
+    b.say("Where ", A, " is positive, ", S - A, " cancels; multiplied by its conjugate it does not:")
+    b.given("S + A > 0")
+    conjugate = Quotient(g * W, S + A)
+    b.state("conjugate", Equation(S - A, "=", conjugate), "S^2 - A^2 = g W")
+    decay = Exp(-2 * S * time)
+    under = 2 * S * decay + (conjugate + g * P0) * (ONE - decay)
+    b.sign("unstable denominator", Equation(under, ">", ZERO), "2 S times the denominator",
+           ["explicit denominator"], identities=["conjugate"])  # fmt: skip
+    over = 2 * S * P0 * decay + (P0 * (S + A) + W) * (ONE - decay)
+    b.state("explicit, unstable", Equation(P_t, "=", Quotient(over, under)), "insert the conjugate",
+            ["explicit solution", "conjugate", "decay"])  # fmt: skip
