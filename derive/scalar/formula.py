@@ -97,18 +97,17 @@ class Formula:
         Raises:
             InputError: a step is not accepted, or a branch computes something else than its step says.
         """
-        lecture = self.lecture()
-        rejected = [o for o in lecture.verify() if not o.accepted]
-        if rejected:
-            raise InputError(f"{self.name}: the step {rejected[0].step} is rejected: {rejected[0].message}")
-        reading = learned(lecture.key)
-        back = tuple((new, old) for old, new in self.renamed)
+        lecture, back = self.lecture(), tuple((new, old) for old, new in self.renamed)
+        reading, accepted = learned(lecture.key)
+        lost = [s.name for s in self.derivation if s.name not in accepted]
+        if lost:
+            raise InputError(f"{self.name}: the step {lost[0]!r} is rejected")
+        for let in self.program.lets:
+            if not _same(rename(let.body, back), rename(let.symbol, back), reading):
+                raise InputError(f"{self.name}: {let.symbol.name} is not what the step that defines it says")
         for branch in self.program.branches:
-            body = branch.body
-            for let in reversed(self.program.lets):
-                body = replaced(body, let.symbol, let.body)  # type: ignore[arg-type]
             step = lecture.step(branch.step).statement
-            if not any(_same(rename(body, back), side, reading) for side in (step.rhs, step.lhs)):
+            if not any(_same(rename(branch.body, back), side, reading) for side in (step.rhs, step.lhs)):
                 raise InputError(f"{self.name}: a branch is not what the step {branch.step!r} proves")
 
 
@@ -123,8 +122,8 @@ def rename(term: Term, pairs: tuple[tuple[Symbol, Symbol], ...]) -> Term:
 
 
 @cache
-def learned(key: str) -> Reading:
-    """Return what may be used at the end of a lecture, each step replayed before it is taken up."""
+def learned(key: str) -> tuple[Reading, frozenset[str]]:
+    """Return what may be used at the end of a lecture, and the steps that were replayed and accepted."""
     from derive.derivation import learn, verify
     from derive.theory import lecture
 
@@ -134,7 +133,7 @@ def learned(key: str) -> Reading:
     for step in current.steps:
         if step.name in accepted:
             reading = learn(reading, current.theory, step)
-    return reading
+    return reading, frozenset(accepted)
 
 
 def _same(one: Term, two: Term, reading: Reading) -> bool:

@@ -113,16 +113,15 @@ def _discrete() -> Formula:
 
 def _filtered() -> Formula:
     predictor, plus = _discrete(), _symbol("M+")
-    C, R, M = _symbols("C R M")
+    A, C, Q, R, T, M, lam = _symbols("A C Q R T M λ")
+    names = "filtered covariance in closed form", "filtered covariance without a division by C", "filtered double root"
     branches = tuple(
-        Branch(b.conditions, Quotient(b.body * R, Power(C, 2) * b.body + R) if b.body != ZERO else ZERO, f"{name}")
-        for b, name in zip(
-            predictor.program.branches,
-            ("filtered covariance", "filtered covariance without a division by C", "filtered double root"),
-            strict=True,
-        )
+        Branch(b.conditions, Quotient(b.body * R, lam) if b.body != ZERO else ZERO, name)
+        for b, name in zip(predictor.program.branches, names, strict=True)
     )
-    program = replace(predictor.program, name="dare_filtered_covariance", branches=branches)
+    half = Let(lam, Number(Fraction(1, 2)) * (Power(A, 2) * R + Power(C, 2) * Q + R + T))
+    lets = (*predictor.program.lets, half)
+    program = replace(predictor.program, name="dare_filtered_covariance", lets=lets, branches=branches)
     return Formula(
         "dare_filtered_covariance", Equation(plus, "=", Quotient(M * R, Power(C, 2) * M + R)), predictor.defined,
         "filtered covariance", ("predictor from filter", "filter from predictor"), program, _lecture,

@@ -52,33 +52,23 @@ class Program:
         """Return a function of arrays (broadcast) that returns an array, or a float for numbers."""
         import numpy as np
 
+        from derive.scalar.tape import Tape
+
+        tape = Tape(self)
+
         def evaluate(*values: Any) -> Any:
             if len(values) != len(self.arguments):
                 raise InputError(f"{self.name}: expected {len(self.arguments)} arguments, got {len(values)}")
             arrays = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in values))
             flat = [a.ravel() for a in arrays]
             out = np.empty(flat[0].shape)
+            room = tape.buffers(min(CHUNK, out.size))
             with np.errstate(all="ignore"):
                 for i in range(0, out.size, CHUNK):
-                    out[i : i + CHUNK] = self._block([a[i : i + CHUNK] for a in flat])
+                    tape.run([a[i : i + CHUNK] for a in flat], out[i : i + CHUNK], room)
             return out.reshape(arrays[0].shape)[()]
 
         return evaluate
-
-    def _block(self, arrays: Sequence[Any]) -> Any:
-        """Return the values at a few points, the branches from last to first."""
-        import numpy as np
-
-        env = {s.name: a for s, a in zip(self.arguments, arrays, strict=True)}
-        for let in self.lets:
-            env[let.symbol.name] = _fold(let.body, env, numpy_function)
-        result: Any = np.nan
-        for branch in reversed(self.branches):
-            taken: Any = True
-            for condition in branch.conditions:
-                taken = _test(condition, env, numpy_function) & taken
-            result = np.where(taken, _fold(branch.body, env, numpy_function), result)
-        return result
 
     def to_casadi(self) -> Any:
         """Return a CasADi function of scalars."""
@@ -194,13 +184,6 @@ def casadi_function(name: str, value: Any) -> Any:
     if name == "max":
         return casadi.fmax(0, value)
     return getattr(casadi, {"abs": "fabs"}.get(name, name))(value)
-
-
-def numpy_function(name: str, value: Any) -> Any:
-    """Apply a function of NumPy."""
-    import numpy as np
-
-    return np.maximum(0.0, value) if name == "max" else getattr(np, name)(value)
 
 
 def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) -> Any:

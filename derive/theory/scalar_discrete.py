@@ -228,10 +228,6 @@ def _derive_cases(b: ScalarBuilder) -> None:
     b.sign("C^2 m + R > 0", Equation(square(C) * m + R, ">", ZERO), "an innovation covariance", ["m >= 0", "R > 0"], squares=[C])
     b.state("discrete Riccati equation without a division by C", Equation(m, "=", recursion(A, C, Q, R, m)), "T^2 - b^2 = 4 C^2 Q R")
     b.state("same discrete covariance", Equation(M, "=", m), "multiply by T - b")
-    b.state(
-        "filtered covariance without a division by C",
-        Equation(s["M+"], "=", Quotient(m * R, square(C) * m + R)), "insert it", ["same discrete covariance"],
-    )  # fmt: skip
     b.sign("C^2 Q + R > 0", Equation(square(C) * Q + R, ">", ZERO), "an innovation covariance", ["Q >= 0", "R > 0"], squares=[C])
     b.equal("T for A = 0", Equation(T, "=", square(C) * Q + R), ["T >= 0", "C^2 Q + R > 0"], identities=["A = 0"])
     b.state("b in factors", Equation(s["b"], "=", (A - ONE) * (A + ONE) * R + square(C) * Q), "no cancellation at |A| = 1")
@@ -321,6 +317,12 @@ def _derive_recursion(b: ScalarBuilder) -> None:
     )  # fmt: skip
     b.say("The distance to the steady state is multiplied by the decay in each step, up to a denominator that stays bounded:")
     b.state("steady innovation covariance", Equation(lam, "=", square(C) * M + R), "insert the root")
+    over, below = Quotient(s["b"] + T, 2 * square(C)), Quotient(2 * Q * R, T - s["b"])
+    b.state("filtered covariance in closed form", Equation(s["M+"], "=", Quotient(over * R, lam)), "the same denominator")
+    b.state(
+        "filtered covariance without a division by C", Equation(s["M+"], "=", Quotient(below * R, lam)),
+        "the other form of the root", ["filtered covariance in closed form", "same discrete covariance"],
+    )  # fmt: skip
     b.state(
         "distance in discrete time",
         Equation(P - M, "=", Quotient((start - M) * lam * (ONE - (ONE - rho) * sigma), d)), "common denominator",

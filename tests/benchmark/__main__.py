@@ -7,10 +7,11 @@ import sys
 from collections.abc import Callable, Sequence
 
 from tests.benchmark.prover import prover
+from tests.benchmark.scalar import scalar
 from tests.benchmark.startup import startup
 from tests.benchmark.table import Row
 
-SECTIONS: dict[str, Callable[[], list[Row]]] = {"prover": prover, "startup": startup}
+SECTIONS: dict[str, Callable[[], list[Row]]] = {"prover": prover, "startup": startup, "scalar": scalar}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
