@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.functions import is_scalar
+from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.rules import Context, Fact, Grid
 from derive.scalars import adopt_atom, adopt_scalar
 from derive.terms import (

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Literal
 
-from derive.context import DeclaredInverse, Theory, adopt
+from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
 from derive.real import NEGATION, Sign
@@ -332,9 +332,9 @@ class Lecture:
         """Return the definitions and hypotheses that a step rests on, through lemmas and the reasons of inverses."""
         step = next((s for s in self.steps if s.name == name), None)
         item = self.theory.declared.get(name)
-        if step is None and not isinstance(item, DeclaredInverse):
+        if step is None and not (isinstance(item, (DeclaredInverse, DeclaredAtom)) and item.because):
             return frozenset({name})
-        because = item.because if isinstance(item, DeclaredInverse) else ()
+        because = item.because if isinstance(item, (DeclaredInverse, DeclaredAtom)) else ()
         below = (*step.uses, *step.proof.links) if step else (because,) if isinstance(because, str) else because
         return frozenset().union(*map(self.rests_on, below))
 

@@ -11,21 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
-from derive.functions import (
-    Abs,
-    Arctan,
-    Definite,
-    Exp,
-    Infinity,
-    Limit,
-    Log,
-    Max,
-    Power,
-    Quotient,
-    Rate,
-    Root,
-    Start,
-)
+from derive.functions import Abs, Arctan, Definite, Exp, Infinity, Limit, Log, Max, Power, Quotient, Rate, Root, Start
 from derive.latex.alphabet import GREEK
 from derive.terms import (
     Block,

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
-from derive.context import Declared, DeclaredFact, DeclaredInverse
+from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse
 from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Step
 from derive.terms import Dot, Equation, Expect, Inverse, Symbol, Term
 
@@ -272,9 +272,11 @@ class _Layout:
             return lhs if step.statement.relation == "=" and isinstance(lhs, (Symbol, Expect, Dot)) else name
         if isinstance(item, DeclaredInverse):
             return Inverse(item.of)
+        if isinstance(item, DeclaredAtom):
+            return None
         if isinstance(item, Declared):
             lhs = item.statement.lhs
-            if item.statement.relation in ("⪰", "≻"):
+            if item.statement.relation in ("⪰", "≻", "≥", ">", "≠"):
                 return item.statement
             return lhs if isinstance(lhs, (Symbol, Expect, Dot)) else item.text or name
         if re.fullmatch(r"I\w+", name) and name not in self.anchors:

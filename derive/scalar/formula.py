@@ -64,7 +64,7 @@ class Formula:
         """The statement as a SymPy equation of real symbols."""
         import sympy
 
-        return sympy.Eq(_sympy(self.statement.lhs), _sympy(self.statement.rhs), evaluate=False)
+        return sympy.Eq(real_expression(self.statement.lhs), real_expression(self.statement.rhs), evaluate=False)
 
     def latex(self) -> str:
         """Return the statement as LaTeX."""
@@ -148,13 +148,16 @@ def _same(one: Term, two: Term, reading: Reading) -> bool:
     return not claim.terms or prove_identity(claim, relations, list(reading.real.atoms), 2.0) is not None
 
 
-def _sympy(term: Term) -> Any:
+def real_expression(term: Term) -> Any:
+    """Return a term about scalars as a SymPy expression of real symbols."""
     import sympy
 
     from derive import functions as f
     from derive import terms as t
 
-    below = [_sympy(child) for child in term.children() if not isinstance(term, (Limit, Definite, Rate))]
+    below = [
+        real_expression(child) for child in term.children() if not isinstance(term, (Limit, Definite, Rate, f.Start))
+    ]
     simple: Mapping[type[Term], Callable[..., Any]] = {
         t.Sum: lambda *a: sympy.Add(*a), t.Product: lambda *a: sympy.Mul(*a), t.Neg: lambda a: -a,
         f.Quotient: lambda a, b: a / b, f.Root: sympy.sqrt, f.Abs: sympy.Abs, f.Max: lambda a: sympy.Max(0, a),
@@ -172,10 +175,14 @@ def _sympy(term: Term) -> Any:
         case f.Power(_, exponent):
             return below[0] ** exponent
         case Definite(body, symbol, lower, upper):
-            return sympy.Integral(_sympy(body), (_sympy(symbol), _sympy(lower), _sympy(upper)))
+            return sympy.Integral(
+                real_expression(body), (real_expression(symbol), real_expression(lower), real_expression(upper))
+            )
         case Limit(body, symbol, point):
-            return sympy.Limit(_sympy(body), _sympy(symbol), _sympy(point))
+            return sympy.Limit(real_expression(body), real_expression(symbol), real_expression(point))
+        case f.Start(body, symbol):
+            return sympy.Subs(real_expression(body), real_expression(symbol), 0)
         case Rate(body, symbol):
-            return sympy.Derivative(_sympy(body), _sympy(symbol))
+            return sympy.Derivative(real_expression(body), real_expression(symbol))
         case _:
             return simple[type(term)](*below)

@@ -147,7 +147,8 @@ def _transient() -> Formula:
         ),
     )  # fmt: skip
     return Formula(
-        "riccati_transient", Equation(P_t, "=", explicit(S + A, S - A)), "V > 0, W >= 0, P(0) >= 0, t >= 0; S > 0, else A = C W = 0",
+        "riccati_transient", Equation(P_t, "=", explicit(S + A, S - A)),
+        "V > 0, W >= 0, P(0) >= 0, t >= 0; S > 0, else A = C W = 0",
         "explicit solution", ("start", "Riccati differential equation", "P(t) >= 0", "distance to the steady state"),
         program, _lecture,
     )  # fmt: skip

@@ -7,7 +7,7 @@ what was proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -113,7 +113,7 @@ NAMES = {"σ": "sigma", "ω": "omega", "λ": "lambda_", "ρ": "rho", "τ": "tau"
 def identifier(symbol: Symbol) -> str:
     """Return a name that every language accepts."""
     text = "".join(NAMES.get(c, c) for c in symbol.name)
-    return "".join(c if c.isalnum() and c.isascii() or c == "_" else "_" for c in text).strip("_") or "x"
+    return "".join(c if (c.isalnum() and c.isascii()) or c == "_" else "_" for c in text).strip("_") or "x"
 
 
 # ------------------------------------------------------------------------------------------------ text

@@ -19,9 +19,7 @@ from derive.rules import Fact
 __all__ = ["Ideal", "closure", "prove_identity", "prove_sign"]
 
 
-def closure(
-    polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], expand: bool = True
-) -> dict[str, Poly]:
+def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], expand: bool = True) -> dict[str, Poly]:
     """Return the defining relations of all atoms that occur in the polynomials, directly or within atoms.
 
     Without ``expand`` definitions are left out, so that a scalar stays what it is called.
@@ -218,5 +216,3 @@ def _contradiction(
     model = solver.model()
     values = [model.eval(c, model_completion=True).as_fraction() for c in unknowns]
     return [SignProduct(Fraction(v), p.facts, p.squares) for v, p in zip(values, products, strict=True) if v]
-
-

@@ -122,7 +122,12 @@ class ScalarBuilder(Builder):
 
     def record(self, step: Step) -> Step:
         """Replay a step and keep it; it also names the cases in which its quotients and roots are defined."""
-        return super().record(replace(step, uses=tuple(dict.fromkeys((*step.uses, *self._consulted(step.statement), *self._cases(step.statement))))))
+        return super().record(
+            replace(
+                step,
+                uses=tuple(dict.fromkeys((*step.uses, *self._consulted(step.statement), *self._cases(step.statement)))),
+            )
+        )
 
     def _consulted(self, statement: Equation) -> list[str]:
         """Return the cases and proved limits without which the limits in a statement are not known."""
@@ -156,7 +161,15 @@ class ScalarBuilder(Builder):
         return [r for r in reasons if isinstance(d := declared.get(r), Declared) and d.case]
 
     def _keep(
-        self, name: str, statement: Equation, rule: Rule, reason: str | Text, proof: Proof, number: str, source: str, show: bool
+        self,
+        name: str,
+        statement: Equation,
+        rule: Rule,
+        reason: str | Text,
+        proof: Proof,
+        number: str,
+        source: str,
+        show: bool,
     ) -> Step:
         from derive.theory.builder import _used
 
@@ -180,5 +193,3 @@ def _reads(statement: Equation, reading: Reading) -> bool:
 
 def _turned(statement: Equation) -> Equation:
     return Equation(statement.rhs, statement.relation, statement.lhs)
-
-

@@ -97,7 +97,7 @@ def derive(b: ScalarBuilder) -> None:
 
 def _derive_roots(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, C, W, V, g, S, P, other, X = (s[k] for k in ("A", "C", "W", "V", "g", "S", "P", "P-", "X"))
+    A, C, W, V, g, P, other, X = (s[k] for k in ("A", "C", "W", "V", "g", "P", "P-", "X"))
     b.heading("The Riccati equation and its two roots")
     b.say("One state, one output: ", A, ", ", C, ", ", W, " and ", V, " are real numbers,")
     b.given("V > 0", "W >= 0")
@@ -155,12 +155,15 @@ def _derive_stability(b: ScalarBuilder) -> None:
 def _derive_cases(b: ScalarBuilder) -> None:
     s = b.theory.symbols
     A, C, W, V, S, P, K, p = (s[k] for k in ("A", "C", "W", "V", "S", "P", "K", "p"))
-    facts = ["S >= 0", "g >= 0", "W >= 0"]
     b.heading("Degenerate cases")
     b.say("Without process noise the decay rate is ", Abs(A), ", whatever the sign of ", A, ".")
     b.given("W = 0")
     b.equal("S = |A|", Equation(S, "=", Abs(A)), ["S >= 0", "|A| ≥ 0"], identities=["W = 0"])
-    b.equal("|A| by the maximum", Equation(Abs(A), "=", 2 * Max(A) - A), ["|A| ≥ 0", "max(0,A) ≥ 0", "max(0,A) ≥ its argument"])
+    b.equal(
+        "|A| by the maximum",
+        Equation(Abs(A), "=", 2 * Max(A) - A),
+        ["|A| ≥ 0", "max(0,A) ≥ 0", "max(0,A) ≥ its argument"],
+    )
     b.state(
         "no process noise",
         Equation(P, "=", Quotient(2 * V * Max(A), square(C))),
@@ -179,10 +182,10 @@ def _derive_cases(b: ScalarBuilder) -> None:
     )  # fmt: skip
     value = Quotient(Root(V * W), Abs(C))
     b.sign("root over |C|", Equation(value, "≥", ZERO), "of nonnegative numbers", ["root of VW ≥ 0", "1/|C| > 0"])
-    b.state(
-        "squares of the integrator", Equation(square(P), "=", square(value)), "S^2 = g W", ["A = 0"]
+    b.state("squares of the integrator", Equation(square(P), "=", square(value)), "S^2 = g W", ["A = 0"])
+    b.equal(
+        "integrator", Equation(P, "=", value), ["P >= 0", "root over |C|"], identities=["squares of the integrator"]
     )
-    b.equal("integrator", Equation(P, "=", value), ["P >= 0", "root over |C|"], identities=["squares of the integrator"])
     b.say("Neither noise nor dynamics: both roots are one, and the closed loop stays at the boundary.")
     b.state("square of the double root", Equation(square(P), "=", ZERO), "S^2 = 0", ["A = 0", "W = 0"])
     b.equal("double root", Equation(P, "=", ZERO), ["P >= 0"], identities=["square of the double root"])

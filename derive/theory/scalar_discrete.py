@@ -25,7 +25,10 @@ def linear(A: Term, C: Term, Q: Term, R: Term) -> Term:
 
 def declare(t: Theory) -> None:
     """Declare covariances, roots, and the recursion."""
-    Q, R = t.scalar("Q", meaning="covariance of the process noise"), t.scalar("R", meaning="covariance of the sensor noise")
+    Q, R = (
+        t.scalar("Q", meaning="covariance of the process noise"),
+        t.scalar("R", meaning="covariance of the sensor noise"),
+    )
     t.assume("R > 0", R, ">", text="the output is noisy")
     t.assume("Q >= 0", Q, "≥", text="a covariance is not negative")
     t.atom("reciprocal", R, "R > 0", "1/R")
@@ -42,7 +45,9 @@ def _declare_roots(t: Theory, Q: Term, R: Term, tail: str, sub: str, A: Term | N
     t.atom("root", square(beta) + 4 * square(C) * Q * R, "discrete radicand" + tail, "discrete root" + tail)
     t.define("T" + tail, T, Root(square(beta) + 4 * square(C) * Q * R))
     for name, sign, sup in (("M", T, ""), ("M-", -T, "-")):
-        M = t.scalar(name + tail, Glyph("P", sub=sub, sup="d" + sup), meaning="steady covariance of the predicted state")
+        M = t.scalar(
+            name + tail, Glyph("P", sub=sub, sup="d" + sup), meaning="steady covariance of the predicted state"
+        )
         t.define(name + tail, M, Quotient(beta + sign, 2 * square(C)))
     upper = t.symbols["M" + tail]
     t.atom("reciprocal", square(C) * upper + R, "C^2 M + R > 0" + tail, "1/(C^2 M+R)" + tail)
@@ -221,20 +226,43 @@ def _derive_cases(b: ScalarBuilder) -> None:
     b.heading("Degenerate cases in discrete time")
     b.say("A form without a division by ", C, ":")
     b.given("T > b", "m")
-    b.sign(
-        "1/(T-b) > 0", Equation(Quotient(ONE, T - s["b"]), ">", ZERO), RECIPROCAL, ["T > b"]
-    )
+    b.sign("1/(T-b) > 0", Equation(Quotient(ONE, T - s["b"]), ">", ZERO), RECIPROCAL, ["T > b"])
     b.sign("m >= 0", Equation(m, "≥", ZERO), "of nonnegative numbers", ["1/(T-b) > 0", "Q >= 0", "R > 0"])
-    b.sign("C^2 m + R > 0", Equation(square(C) * m + R, ">", ZERO), "an innovation covariance", ["m >= 0", "R > 0"], squares=[C])
-    b.state("discrete Riccati equation without a division by C", Equation(m, "=", recursion(A, C, Q, R, m)), "T^2 - b^2 = 4 C^2 Q R")
+    b.sign(
+        "C^2 m + R > 0",
+        Equation(square(C) * m + R, ">", ZERO),
+        "an innovation covariance",
+        ["m >= 0", "R > 0"],
+        squares=[C],
+    )
+    b.state(
+        "discrete Riccati equation without a division by C",
+        Equation(m, "=", recursion(A, C, Q, R, m)),
+        "T^2 - b^2 = 4 C^2 Q R",
+    )
     b.state("same discrete covariance", Equation(M, "=", m), "multiply by T - b")
-    b.sign("C^2 Q + R > 0", Equation(square(C) * Q + R, ">", ZERO), "an innovation covariance", ["Q >= 0", "R > 0"], squares=[C])
+    b.sign(
+        "C^2 Q + R > 0",
+        Equation(square(C) * Q + R, ">", ZERO),
+        "an innovation covariance",
+        ["Q >= 0", "R > 0"],
+        squares=[C],
+    )
     b.equal("T for A = 0", Equation(T, "=", square(C) * Q + R), ["T >= 0", "C^2 Q + R > 0"], identities=["A = 0"])
-    b.state("b in factors", Equation(s["b"], "=", (A - ONE) * (A + ONE) * R + square(C) * Q), "no cancellation at |A| = 1")
+    b.state(
+        "b in factors", Equation(s["b"], "=", (A - ONE) * (A + ONE) * R + square(C) * Q), "no cancellation at |A| = 1"
+    )
     b.state("no memory", Equation(M, "=", Q), "only the last disturbance is left", ["T for A = 0", "A = 0"])
     b.given("Q = 0")
-    b.sign("R |A^2 - 1| >= 0", Equation(R * Abs(square(A) - ONE), "≥", ZERO), "a product of nonnegative numbers", ["R > 0", "|A^2-1| ≥ 0"])
-    b.equal("T for Q = 0", Equation(T, "=", R * Abs(square(A) - ONE)), ["T >= 0", "R |A^2 - 1| >= 0"], identities=["Q = 0"])
+    b.sign(
+        "R |A^2 - 1| >= 0",
+        Equation(R * Abs(square(A) - ONE), "≥", ZERO),
+        "a product of nonnegative numbers",
+        ["R > 0", "|A^2-1| ≥ 0"],
+    )
+    b.equal(
+        "T for Q = 0", Equation(T, "=", R * Abs(square(A) - ONE)), ["T >= 0", "R |A^2 - 1| >= 0"], identities=["Q = 0"]
+    )
     b.equal(
         "|A^2 - 1|", Equation(Abs(square(A) - ONE), "=", 2 * Max(square(A) - ONE) - (square(A) - ONE)),
         ["|A^2-1| ≥ 0", "max(0,A^2-1) ≥ 0", "max(0,A^2-1) ≥ its argument"],
@@ -244,8 +272,15 @@ def _derive_cases(b: ScalarBuilder) -> None:
         "zero unless the state is unstable", ["T for Q = 0", "|A^2 - 1|", "Q = 0"],
     )  # fmt: skip
     b.given("A^2 = 1")
-    b.state("square of the double root on the circle", Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["Q = 0", "A^2 = 1"])
-    b.equal("double root on the circle", Equation(M, "=", ZERO), ["M >= 0"], identities=["square of the double root on the circle"])
+    b.state(
+        "square of the double root on the circle", Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["Q = 0", "A^2 = 1"]
+    )
+    b.equal(
+        "double root on the circle",
+        Equation(M, "=", ZERO),
+        ["M >= 0"],
+        identities=["square of the double root on the circle"],
+    )
     b.state("filtered double root", Equation(s["M+"], "=", ZERO), "insert it", ["double root on the circle"])
 
 
@@ -266,22 +301,36 @@ def _derive_cross(b: ScalarBuilder) -> None:
         "complete the square: F and q take the place of A and Q",
     )
     gain = Quotient(A * M * C + N, sigma)
-    b.state("discrete closed loop with common noise", Equation(A - gain * C, "=", Quotient(F * R, sigma)), "insert the gain")
+    b.state(
+        "discrete closed loop with common noise", Equation(A - gain * C, "=", Quotient(F * R, sigma)), "insert the gain"
+    )
 
 
 def _derive_recursion(b: ScalarBuilder) -> None:
-    t, s = b.theory, b.theory.symbols
+    s = b.theory.symbols
     A, C, Q, R, T, start, sigma, after, lam, rho, P, M = (
         s[k] for k in ("A", "C", "Q", "R", "T", "P0", "σ", "σ'", "λ", "ρ", "P_k", "M")
     )
     b.heading("Every step of the recursion")
-    b.say("The recursion ", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), " is a Moebius map; its powers are written with")
+    b.say(
+        "The recursion ",
+        Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)),
+        " is a Moebius map; its powers are written with",
+    )
     b.sign("λ > 0", Equation(lam, ">", ZERO), "R is positive", ["T >= 0", "R > 0", "Q >= 0"], squares=[A, C])
     b.given("λ", "ρ")
     b.say("and the sums ", Equation(sigma, "=", ONE + rho), " + ... of its first powers, which obey")
     b.given("σ'")
-    b.state("characteristic equation", Equation(lam * (ONE + rho), "=", square(A) * R + square(C) * Q + R), "T^2 = (trace)^2 - 4 det")
-    b.state("the power as a sum", Equation(ONE - (ONE - rho) * after, "=", rho * (ONE - (ONE - rho) * sigma)), "so it is ρ^k, by induction")
+    b.state(
+        "characteristic equation",
+        Equation(lam * (ONE + rho), "=", square(A) * R + square(C) * Q + R),
+        "T^2 = (trace)^2 - 4 det",
+    )
+    b.state(
+        "the power as a sum",
+        Equation(ONE - (ONE - rho) * after, "=", rho * (ONE - (ONE - rho) * sigma)),
+        "so it is ρ^k, by induction",
+    )
     n, d, n_next, d_next = (s[k] for k in ("nk", "dk", "nk+1", "dk+1"))
     b.say("The claim is")
     b.given("n", "d", "N_k >= 0", "D_k > 0")
@@ -290,7 +339,9 @@ def _derive_recursion(b: ScalarBuilder) -> None:
     b.given("P_k")
     b.say("It holds at the start,")
     b.state("induction start", Equation(P, "=", start), "the empty sum", ["σ = 0"])
-    b.sign("numerator at the start", Equation(n, "≥", ZERO), "the empty sum", ["P0 >= 0", "λ > 0"], identities=["σ = 0"])
+    b.sign(
+        "numerator at the start", Equation(n, "≥", ZERO), "the empty sum", ["P0 >= 0", "λ > 0"], identities=["σ = 0"]
+    )
     b.sign("denominator at the start", Equation(d, ">", ZERO), "the empty sum", ["λ > 0"], identities=["σ = 0"])
     b.say("and from each step to the next:")
     b.given("n'", "d'")
@@ -298,7 +349,13 @@ def _derive_recursion(b: ScalarBuilder) -> None:
     upper, lower = (square(A) * R + square(C) * Q) * n + Q * R * d, square(C) * n + R * d
     b.state("next denominator", Equation(lam * d_next, "=", lower), "the lower row of the Moebius matrix")
     b.state("next numerator", Equation(lam * n_next, "=", upper), "the upper row")
-    b.sign("lower row", Equation(lower, ">", ZERO), "as the induction hypothesis says", ["n >= 0", "d > 0", "R > 0"], squares=[C])
+    b.sign(
+        "lower row",
+        Equation(lower, ">", ZERO),
+        "as the induction hypothesis says",
+        ["n >= 0", "d > 0", "R > 0"],
+        squares=[C],
+    )
     b.sign("upper row", Equation(upper, "≥", ZERO), "as the induction hypothesis says",
            ["n >= 0", "d > 0", "R > 0", "Q >= 0"], squares=[A, C])  # fmt: skip
     for name, x, row in (("d' > 0", d_next, "lower row"), ("n' >= 0", n_next, "upper row")):
@@ -308,17 +365,23 @@ def _derive_recursion(b: ScalarBuilder) -> None:
         )  # fmt: skip
     b.given("P_k'")
     b.sign("1/d > 0", Equation(Quotient(ONE, d), ">", ZERO), RECIPROCAL, ["d > 0"], identities=["1/d"], alone=True)
-    b.sign("P_k >= 0", Equation(P, "≥", ZERO), "a quotient of such", ["n >= 0", "1/d > 0"], identities=["P_k"], alone=True)
+    b.sign(
+        "P_k >= 0", Equation(P, "≥", ZERO), "a quotient of such", ["n >= 0", "1/d > 0"], identities=["P_k"], alone=True
+    )
     b.sign("C^2 P_k + R > 0", Equation(square(C) * P + R, ">", ZERO), "an innovation covariance", ["P_k >= 0", "R > 0"],
            squares=[C], alone=True)  # fmt: skip
     b.state(
         "induction step", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), "both rows",
         ["next numerator", "next denominator", "P_k", "P_k'"],
     )  # fmt: skip
-    b.say("The distance to the steady state is multiplied by the decay in each step, up to a denominator that stays bounded:")
+    b.say(
+        "Each step multiplies the distance to the steady state by the decay, up to a bounded denominator:"
+    )
     b.state("steady innovation covariance", Equation(lam, "=", square(C) * M + R), "insert the root")
     over, below = Quotient(s["b"] + T, 2 * square(C)), Quotient(2 * Q * R, T - s["b"])
-    b.state("filtered covariance in closed form", Equation(s["M+"], "=", Quotient(over * R, lam)), "the same denominator")
+    b.state(
+        "filtered covariance in closed form", Equation(s["M+"], "=", Quotient(over * R, lam)), "the same denominator"
+    )
     b.state(
         "filtered covariance without a division by C", Equation(s["M+"], "=", Quotient(below * R, lam)),
         "the other form of the root", ["filtered covariance in closed form", "same discrete covariance"],

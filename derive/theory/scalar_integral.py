@@ -1,20 +1,9 @@
-"""The log-integral of the scalar estimator, corollary 2 of the source, evaluated by an antiderivative and its limits."""
+"""The log-integral of the scalar estimator, corollary 2 of the source: an antiderivative and its limits."""
 
 from __future__ import annotations
 
 from derive.context import Theory
-from derive.functions import (
-    PI,
-    Abs,
-    Arctan,
-    Definite,
-    Infinity,
-    Limit,
-    Log,
-    Max,
-    Quotient,
-    Rate,
-)
+from derive.functions import PI, Abs, Arctan, Definite, Infinity, Limit, Log, Max, Quotient, Rate
 from derive.terms import Equation, Glyph, Neg, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
@@ -69,9 +58,7 @@ def _derive_signs(b: ScalarBuilder) -> None:
     b.given("ω > 0")
     b.sign("ω^2 > 0", Equation(square(w), ">", ZERO), "a square", ["ω > 0"])
     for name, x in (("S", S), ("|A|", A)):
-        b.sign(
-            f"ω^2 + {name}^2 > 0", Equation(square(w) + square(x), ">", ZERO), "squares", ["ω > 0"], squares=[x]
-        )
+        b.sign(f"ω^2 + {name}^2 > 0", Equation(square(w) + square(x), ">", ZERO), "squares", ["ω > 0"], squares=[x])
     b.state(
         "spectral factor",
         Equation(spectrum(A, W, g, w), "=", Quotient(square(w) + square(S), square(w) + square(A))),
@@ -104,9 +91,11 @@ def _derive_general(b: ScalarBuilder) -> None:
     s = b.theory.symbols
     A, W, g, S, w, ratio = (s[k] for k in ("A", "W", "g", "S", "ω", "ℓ"))
     b.say("First let the state move by itself.")
-    b.given("A ≠ 0", "S > 0")
+    b.given("A ≠ 0")
     b.sign("S is positive", Equation(S, ">", ZERO), "S^2 is at least A^2", ["A ≠ 0", "S >= 0", "g >= 0", "W >= 0"])
-    b.sign("|A| > 0", Equation(Abs(A), ">", ZERO), "it is nonnegative, and its square is positive", ["|A| ≥ 0", "A ≠ 0"])
+    b.sign(
+        "|A| > 0", Equation(Abs(A), ">", ZERO), "it is nonnegative, and its square is positive", ["|A| ≥ 0", "A ≠ 0"]
+    )
     b.sign("A^2 > 0", Equation(square(A), ">", ZERO), "a square", ["A ≠ 0"])
     b.sign("1/|A| > 0", Equation(Quotient(ONE, Abs(A)), ">", ZERO), "as before", ["|A| > 0"])
     b.sign(
@@ -145,7 +134,8 @@ def _derive_bounds(b: ScalarBuilder, tail: str, ratio: Term, other: str) -> None
     )  # fmt: skip
     b.sign(
         "integrand at most" + tail, Equation(Quotient(g * W, square(w)), "≥", ratio), "ln x is at most x - 1",
-        [f"ln(ω^2+S^2) - {log} ≤", *pos, "1/ω > 0", "g >= 0", "W >= 0"], identities=case, squares=[s["A"] * Quotient(ONE, w)],
+        [f"ln(ω^2+S^2) - {log} ≤", *pos, "1/ω > 0", "g >= 0", "W >= 0"], identities=case,
+        squares=[s["A"] * Quotient(ONE, w)],
         degree=4 if not tail else 3,
     )  # fmt: skip
     b.sign(
@@ -189,7 +179,9 @@ def _derive_integrator(b: ScalarBuilder) -> None:
     b.say("An integrator has its singularity on the axis; the integral exists all the same.")
     b.given("ℓ0")
     factor = Quotient(square(w) + square(S), square(w))
-    b.equal("no maximum", Equation(Max(A), "=", ZERO), ["max(0,A) ≥ 0"], identities=["A = 0"], reason="its square is zero")
+    b.equal(
+        "no maximum", Equation(Max(A), "=", ZERO), ["max(0,A) ≥ 0"], identities=["A = 0"], reason="its square is zero"
+    )
     b.state("no modulus", Equation(Abs(A), "=", ZERO), "2 max(0, A) - A", ["|A| by the maximum", "no maximum", "A = 0"])
     b.state("spectral factor" + tail, Equation(spectrum(A, W, g, w), "=", factor), "S^2 = g W", ["A = 0"])
     G = _antiderivative(w, S, ratio)

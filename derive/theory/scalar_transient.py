@@ -52,7 +52,9 @@ def declare(t: Theory) -> None:
     t.atom("reciprocal", S + A, "S + A > 0", "1/(S+A)")
     decay = Exp(-2 * S * time)
     conjugate = Quotient(g * W, S + A)
-    t.atom("reciprocal", 2 * S * decay + (conjugate + g * s["P0"]) * (ONE - decay), "unstable denominator", "1/unstable")
+    t.atom(
+        "reciprocal", 2 * S * decay + (conjugate + g * s["P0"]) * (ONE - decay), "unstable denominator", "1/unstable"
+    )
     t.atom("reciprocal", 2 * S * decay + floor * (ONE - decay), "explicit denominator", "1/explicit")
 
 
@@ -112,8 +114,8 @@ def _derive_solution(b: ScalarBuilder) -> None:
 
 def _derive_comparison(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, W, g, S, h, P0, P1, D0, D1, one, two, time = (
-        s[k] for k in ("A", "W", "g", "S", "h", "P0", "P1", "D0", "D1", "P0(t)", "P1(t)", "t")
+    A, W, g, S, P0, P1, D0, D1, one, two, time = (
+        s[k] for k in ("A", "W", "g", "S", "P0", "P1", "D0", "D1", "P0(t)", "P1(t)", "t")
     )
     decay = Exp(-2 * S * time)
     b.heading("Order and direction")
@@ -123,9 +125,7 @@ def _derive_comparison(b: ScalarBuilder) -> None:
         "difference of solutions", Equation(two - one, "=", Quotient((P1 - P0) * decay, D0 * D1)),
         "common denominator", ["decay"],
     )  # fmt: skip
-    b.sign(
-        "1/D1 > 0", Equation(Quotient(ONE, D1), ">", ZERO), "as before", ["denominator of P1"]
-    )
+    b.sign("1/D1 > 0", Equation(Quotient(ONE, D1), ">", ZERO), "as before", ["denominator of P1"])
     b.sign(
         "the solutions keep their order", Equation(two, "≥", one), "a product of nonnegative numbers",
         ["P1 >= P0", "e^(-2St) > 0", "1/D0 > 0", "1/D1 > 0"], identities=["difference of solutions"], degree=5,
@@ -139,9 +139,7 @@ def _derive_comparison(b: ScalarBuilder) -> None:
 
 def _derive_limit(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, W, g, S, h, P0, D0, P_t, P, time = (
-        s[k] for k in ("A", "W", "g", "S", "h", "P0", "D0", "P0(t)", "P", "t")
-    )
+    A, W, g, S, h, P0, D0, P_t, P, time = (s[k] for k in ("A", "W", "g", "S", "h", "P0", "D0", "P0(t)", "P", "t"))
     decay = Exp(-2 * S * time)
     b.heading("The way to the steady state")
     b.state(
@@ -167,7 +165,9 @@ def _derive_limit(b: ScalarBuilder) -> None:
     b.state("explicit solution", Equation(P_t, "=", explicit), "multiply by 2 S", ["decay"])
     steady = Quotient(P0 * (S + A) + W, floor)
     b.state(
-        "limit", Equation(Limit(explicit, time, Infinity()), "=", steady), "the decay vanishes, the denominator does not"
+        "limit",
+        Equation(Limit(explicit, time, Infinity()), "=", steady),
+        "the decay vanishes, the denominator does not",
     )
     b.state("the limit is the steady state", Equation(steady, "=", P), "S^2 = A^2 + g W")
 

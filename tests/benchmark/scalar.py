@@ -29,7 +29,9 @@ def _lecture() -> list[Row]:
     seconds = time.process_time() - start
     proved = sum(o.accepted for o in outcomes)
     value = f"{proved} of {len(outcomes)} steps, {seconds:.1f} s of processor time"
-    return [Row("lecture derived and replayed", value, f"all, {WHOLE:.0f} s", proved == len(outcomes) and seconds <= WHOLE)]
+    return [
+        Row("lecture derived and replayed", value, f"all, {WHOLE:.0f} s", proved == len(outcomes) and seconds <= WHOLE)
+    ]
 
 
 def _integral() -> Row:
@@ -69,14 +71,13 @@ def _evaluation() -> list[Row]:
     ours = formula("care_covariance").to_numpy()
     seconds, found = best_of(7, lambda: ours(A, C, W, V))
     hand, expected = best_of(7, lambda: by_hand(A, C, W, V))
-    loop, solved = best_of(
-        3, lambda: [solve_continuous_are(A[i], C[i], W[i], V[i])[0, 0] for i in range(SAMPLE)]
-    )
+    loop, solved = best_of(3, lambda: [solve_continuous_are(A[i], C[i], W[i], V[i])[0, 0] for i in range(SAMPLE)])
     loop *= POINTS / SAMPLE
     same = np.allclose(found, expected, rtol=1e-6, atol=1e-9) and np.allclose(found[:SAMPLE], solved, rtol=1e-8)
     return [
         Row(
-            f"{POINTS:.0e} covariances", f"{1e3 * seconds:.0f} ms, a loop of SciPy {loop:.0f} s, {loop / seconds:.0f} times",
+            f"{POINTS:.0e} covariances",
+            f"{1e3 * seconds:.0f} ms, a loop of SciPy {loop:.0f} s, {loop / seconds:.0f} times",
             f"{SPEEDUP:.0f} times", bool(same) and loop >= SPEEDUP * seconds,
         ),
         Row(

@@ -67,7 +67,7 @@ def test_every_link_leads_to_a_row(whole_page):
 
 
 def test_the_page_is_small_enough(whole_page):
-    assert len(whole_page.encode()) <= 600_000
+    assert len(whole_page.encode()) <= 800_000
 
 
 def test_all_steps_are_proved(all_notes):
