@@ -18,7 +18,7 @@ from derive.terms import Equation, Neg, Number, Product, Sum, Symbol, Term, Zero
 
 __all__ = ["Branch", "Let", "Program"]
 
-CHUNK = 8192  # points at a time, so that intermediate results stay in the cache
+CHUNK = 32768  # points at a time, so that intermediate results stay in the cache
 RELATIONS = {"=": "==", ">": ">", "≥": ">=", "≠": "!="}
 
 
