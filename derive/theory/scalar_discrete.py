@@ -374,9 +374,7 @@ def _derive_recursion(b: ScalarBuilder) -> None:
         "induction step", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), "both rows",
         ["next numerator", "next denominator", "P_k", "P_k'"],
     )  # fmt: skip
-    b.say(
-        "Each step multiplies the distance to the steady state by the decay, up to a bounded denominator:"
-    )
+    b.say("Each step multiplies the distance to the steady state by the decay, up to a bounded denominator:")
     b.state("steady innovation covariance", Equation(lam, "=", square(C) * M + R), "insert the root")
     over, below = Quotient(s["b"] + T, 2 * square(C)), Quotient(2 * Q * R, T - s["b"])
     b.state(

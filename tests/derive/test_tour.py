@@ -72,7 +72,7 @@ def test_the_page_is_self_contained(written):
     assert {a[1:] for a in page.addresses} <= page.anchors
     assert not re.search(r"url\((?!data:|#|\"?#)|@import", text)
     without_plots = re.sub(r"<figure>.*?</figure>", "", text, flags=re.DOTALL)
-    assert len(without_plots.encode()) < 600 * 1024
+    assert len(without_plots.encode()) < 800 * 1024
     assert page.tags.count("math") > 500
 
 

@@ -82,6 +82,8 @@ class Point:
         import numpy as np
 
         x, w = np.polynomial.legendre.leggauss(200)
+        for parameter in "ACWV":
+            self.scalar(parameter)  # drawn once, not anew at every node
         variable, upper = ("t", self.scalar("t")) if atom.kind == "integral" else ("ω", 1.0)
         dependent = [n for n in self.real.atoms if self.real.varies(n, variable)]
         kept, total = dict(self.known), 0.0
