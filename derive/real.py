@@ -176,7 +176,7 @@ def reciprocal(poly: Poly, real: Real) -> Poly:
             for s in m:
                 total = total * reciprocal(scalar(s), real)
             return total
-        atom = real.atoms.get(m[0])
+        atom = real.atoms.get(m[0]) if m else None
         if atom is not None and atom.kind == "reciprocal":
             return atom.of.scale(1 / c)
         if atom is not None and atom.kind == "defined":

@@ -35,7 +35,7 @@ def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], ex
             waiting |= scalars_of(atom.of) - seen
             if s in names:
                 found[names[s]] = relations[names[s]]
-    return found
+    return dict(sorted(found.items()))
 
 
 def _relations_of(real: Real, relations: Mapping[str, Poly]) -> dict[str, Any]:
@@ -49,7 +49,7 @@ def _relations_of(real: Real, relations: Mapping[str, Poly]) -> dict[str, Any]:
 class Ideal:
     """Polynomials that are zero, completed to a Groebner basis on demand; every element knows where it comes from."""
 
-    def __init__(self, relations: Mapping[str, Poly], order: Sequence[str], seconds: float = 5.0):
+    def __init__(self, relations: Mapping[str, Poly], order: Sequence[str], seconds: float = 30.0):
         from sympy import QQ, ring
         from sympy.polys.orderings import lex
 
@@ -143,7 +143,7 @@ class Ideal:
 
 
 def prove_identity(
-    claim: Poly, relations: Mapping[str, Poly], order: Sequence[str], seconds: float = 5.0
+    claim: Poly, relations: Mapping[str, Poly], order: Sequence[str], seconds: float = 30.0
 ) -> tuple[Term, ...] | None:
     """Return the addends of a certificate for claim = 0, or None."""
     order = [*order, *sorted(scalars_of(claim) - set(order))]
@@ -201,13 +201,14 @@ def _contradiction(
     """Return products with coefficients whose sum is zero in the ideal, one of them positive."""
     import z3
 
-    solver, sums = z3.SolverFor("QF_LRA"), dict[Any, list[Any]]()
-    unknowns, strict = z3.Reals(" ".join(f"c{i}" for i in range(len(products)))), []
+    context = z3.Context()  # of its own, so that the answer does not depend on what was asked before
+    solver, sums = z3.SolverFor("QF_LRA", context), dict[Any, list[Any]]()
+    unknowns, strict = [z3.Real(f"c{i}", context) for i in range(len(products))], []
     for product, c in zip(products, unknowns, strict=True):
         value, positive = sign_product(product, facts)
         rest, _ = ideal.reduce(ideal.encode(value))
         for m, k in rest.terms():
-            sums.setdefault(m, []).append(z3.RealVal(f"{int(k.numerator)}/{int(k.denominator)}") * c)
+            sums.setdefault(m, []).append(z3.RealVal(f"{int(k.numerator)}/{int(k.denominator)}", context) * c)
         strict += [c] if positive else []
         solver.add(c >= 0)
     solver.add(*(z3.Sum(addends) == 0 for addends in sums.values()), z3.Sum(strict) >= 1)

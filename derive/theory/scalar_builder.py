@@ -44,7 +44,7 @@ class ScalarBuilder(Builder):
         named = {r: relations[r] for name in using for r in names_of(name, relations)}
         near = {**named, **closure([claim, *named.values()], self.reading.real, relations, expand=False)}
         allowed = {**named, **closure([claim, *named.values()], self.reading.real, relations)}
-        found = prove_identity(claim, near, self.order(), 0.5) if len(near) < len(allowed) and named else None
+        found = prove_identity(claim, near, self.order()) if len(near) < len(allowed) and named else None
         found = found or prove_identity(claim, allowed, self.order())
         if found is None:
             raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(allowed) or 'nothing'}")
