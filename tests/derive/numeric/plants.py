@@ -48,6 +48,11 @@ STRONG = {
         np.diag([0, 2e-4, 0]),
         [0],
     ),
+    "integrator fed by a slow unstable mode": (
+        continuous(A=[[0, 1e-4, 0], [0, 1e-4, 0], [0, 0, -1]], C=[[1, 1, 1]], W=np.zeros((3, 3)), V=1),
+        5e-5 * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 0]]),
+        [0],
+    ),
     "cross term that uses up the noise": (continuous(A=2, C=1, W=4, V=1, N=2), [[0]], [0]),
     "constant": (discrete(A=1, C=1, Q=0, R=1), [[0]], [1]),
     "alternation": (discrete(A=-1, C=1, Q=0, R=1), [[0]], [-1]),

@@ -78,6 +78,10 @@ def test_the_start_moves_modes_off_the_boundary(A, time):
     C = np.eye(1, len(A))
     gain = stabilising_gain(A, C, time)
     assert distance_to_stability(np.linalg.eigvals(A - gain @ C), time).max() < -0.01
+    if len(A) > 1:
+        T = np.linalg.qr(np.random.default_rng(1).standard_normal(A.shape))[0]
+        gain = stabilising_gain(T @ A @ T.T, C @ T.T, time)
+        assert distance_to_stability(np.linalg.eigvals(T @ A @ T.T - gain @ C @ T.T), time).max() < -0.01
 
 
 def test_what_is_stable_already_is_left_alone():

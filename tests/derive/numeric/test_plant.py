@@ -340,8 +340,9 @@ def test_detectability_does_not_depend_on_the_unit_of_time(rate):
 @pytest.mark.parametrize("time", ["continuous", "discrete"])
 def test_a_stable_mode_may_hide_beside_a_fast_one(time):
     fast = [[-1e9, 0], [0, -1]] if time == "continuous" else [[0.5, 1e9], [0, 0.4]]
-    plant = plant_from_mapping({"time": time, "A": fast, "C": [[1, 0]], "W": np.eye(2), "V": 1})
-    assert plant.n == 2
+    assert plant_from_mapping({"time": time, "A": fast, "C": [[1, 0]], "W": np.eye(2), "V": 1}).n == 2
+    beside = {"time": time, "A": [[2, 0], [0, -0.5]], "C": [[1, 0]], "W": np.eye(2), "V": 1}
+    assert plant_from_mapping(beside).n == 2
     unstable = {"time": "continuous", "A": [[-1e9, 0], [0, 1e-3]], "C": [[1, 0]], "W": np.eye(2), "V": 1}
     with pytest.raises(InputError, match=r"mode 0.001 is unobservable"):
         plant_from_mapping(unstable)
