@@ -202,7 +202,7 @@ def test_the_example():
     assert_solves(plant, solution)
 
 
-def test_extended_precision_helpers():
+def test_extended_precision():
     rng = np.random.default_rng(0)
     G, X = rng.standard_normal((4, 4)), rng.standard_normal((3, 4))
     V = (G @ G.T + np.eye(4)).astype(np.longdouble)
