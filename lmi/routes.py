@@ -84,13 +84,6 @@ def nuclear_norm(plant: Plant, D: Matrix) -> float:
     return float(np.abs(np.linalg.eigvalsh(root.T @ D @ root)).sum())
 
 
-def _with_newton_error(
-    plant: Plant, status: str, P: Matrix, gain: Matrix, refined: Matrix | None, **kept: Any
-) -> Answer:
-    error = np.inf if refined is None else nuclear_norm(plant, refined - P)
-    return Answer(status, P, gain, output_of(plant, P), error, **kept)
-
-
 def _riccati(plant: Plant) -> Answer:
     from derive.numeric.riccati import solve_riccati
 

@@ -115,8 +115,11 @@ class Builder:
         """Find the addends of a certificate from the named relations and lemmas."""
         found = prove(claim, self._with_only(using).relations, self.reading.context.alphabet, trace=trace)
         if found is None:
-            raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(using) or 'nothing'}")
+            raise self._missing(label, using)
         return found.terms
+
+    def _missing(self, label: str, using: Sequence[str]) -> NotDerived:
+        return NotDerived(f"{self.key}: no certificate for {label} from {', '.join(using) or 'nothing'}")
 
     def _with_only(self, using: Sequence[str]) -> Context:
         """Return what may be used with no other relations than the named declarations and lemmas."""
@@ -203,7 +206,7 @@ class Builder:
             inverse=lower(witness, self.reading)[0][0] if witness else None,
         )
         if proof is None:
-            raise NotDerived(f"{self.key}: no certificate for {name} from {', '.join(using) or 'nothing'}")
+            raise self._missing(name, using)
         done = Proof(positivity=proof)
         step = Step(name, statement, "positivity", _text(reason), done, _used(done), number, source, True)
         return self._display(step)
@@ -226,7 +229,7 @@ class Builder:
         d, m = order_claim(statement, self.reading)[0][0], lower(matrix, self.reading)[0][0]
         proof = prove_comparison(kind, d, m, stable, forcing, self._with_only(using))
         if proof is None:
-            raise NotDerived(f"{self.key}: no certificate for {name} from {', '.join(using) or 'nothing'}")
+            raise self._missing(name, using)
         done = Proof(comparison=proof)
         step = Step(name, statement, "comparison", _text(reason), done, _used(done), number, source, True)
         return self._display(step)

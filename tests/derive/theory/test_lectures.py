@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import random
 from dataclasses import replace
-from importlib import util
 from pathlib import Path
 
 import pytest
@@ -15,18 +14,9 @@ from derive.kernel import Rejected
 from derive.matrix.search import prove
 from derive.terms import Equation, Reading
 from derive.theory import LECTURES, lecture
+from tests.derive.theory.mutants import mutants
 
 PINNED = Path(__file__).parents[2] / "reference" / "relations.json"
-
-
-def load_mutants():
-    spec = util.spec_from_file_location("mutants", Path(__file__).with_name("mutants.py"))
-    module = util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.mutants
-
-
-mutants = load_mutants()
 
 
 def meaning(statement: Equation, rule: str, reading: Reading):
