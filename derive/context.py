@@ -11,8 +11,10 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
+from derive.functions import is_scalar
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.rules import Context, Fact, Grid
+from derive.scalars import adopt_atom, adopt_scalar
 from derive.terms import (
     Dot,
     Equation,
@@ -26,6 +28,7 @@ from derive.terms import (
     Transpose,
     Zero,
     lower,
+    walk,
 )
 
 FACT_OF = {"⪰": "psd", "≻": "pd"}
@@ -71,6 +74,19 @@ class DeclaredFact:
     case: bool = False
 
 
+@dataclass(frozen=True)
+class DeclaredAtom:
+    """A scalar that stands for a root, quotient or function of another; it may be used once its reason is there.
+
+    The reason is the name of a fact on the argument, where the function is not defined everywhere.
+    """
+
+    name: str
+    kind: str
+    of: Term
+    because: str = ""
+
+
 @dataclass
 class Theory:
     """Symbols, definitions and hypotheses under one key; filled by its module's ``theory()`` function."""
@@ -78,7 +94,7 @@ class Theory:
     key: str
     title: str
     symbols: dict[str, Symbol] = field(default_factory=dict[str, Symbol])
-    declared: dict[str, Declared | DeclaredInverse | DeclaredFact] = field(default_factory=dict)
+    declared: dict[str, Declared | DeclaredInverse | DeclaredFact | DeclaredAtom] = field(default_factory=dict)
     random: set[str] = field(default_factory=set[str])
     uncentred: set[str] = field(default_factory=set[str])
     constant: set[str] = field(default_factory=set[str])
@@ -86,6 +102,7 @@ class Theory:
     nonnegative: set[str] = field(default_factory=set[str])
     complex: set[str] = field(default_factory=set[str])
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
+    speaks_of: dict[str, frozenset[str]] = field(default_factory=dict)  # scalars in a declaration
 
     def matrix(
         self,
@@ -196,6 +213,13 @@ class Theory:
         self.symbols[name] = Symbol(name, rows, rows, Glyph(name), symmetric)
         self.declared[name] = DeclaredInverse(name, of, because, by)
 
+    def atom(self, kind: str, of: Term, because: str = "", name: str = "") -> Symbol:
+        """Declare that a function of a scalar is read: root, reciprocal, absolute, part, exp, log, arctan, integral."""
+        name = name or f"{kind} {len(self.declared)}"
+        self.symbols[name] = symbol = Symbol(name, glyph=Glyph(name), scalar=True)
+        self.declared[name] = DeclaredAtom(name, kind, of, because)
+        return symbol
+
     def statement(self, name: str) -> Equation:
         """Return what a definition or hypothesis says."""
         item = self.declared[name]
@@ -233,24 +257,44 @@ class Theory:
     def settle(self, reading: Reading) -> Reading:
         """Adopt every declaration whose inverses are available by now, in the order of declaration."""
         for item in self.declared.values():
-            if item.name not in reading.adopted:
+            if item.name not in reading.adopted and not self._early(item, reading):
                 try:
                     reading = declare(reading, item)
                 except MissingInverse:
                     continue
         return reading
 
+    def _early(self, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
+        """Tell whether a declaration speaks of a scalar whose definition is not adopted yet."""
+        if item.name not in self.speaks_of:
+            names = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol) and n.scalar}
+            self.speaks_of[item.name] = frozenset(names)
+        used = self.speaks_of[item.name]
+        return bool(used) and any(
+            isinstance(d.statement.lhs, Symbol) and d.statement.lhs.name in used
+            for d in self.declared.values()
+            if isinstance(d, Declared) and d.kind == "definition" and d is not item and d.name not in reading.adopted
+        )
+
     def sizes(self) -> set[str]:
         """Return the names of the dimensions."""
         return {size for s in self.symbols.values() for size in (s.rows, s.cols) if size}
 
 
-def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact) -> Reading:
+def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> tuple[Term, ...]:
+    if isinstance(item, Declared):
+        return item.statement.lhs, item.statement.rhs
+    return (item.matrix,) if isinstance(item, DeclaredFact) else (item.of,)
+
+
+def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> Reading:
     """Extend a reading by one declaration of the theory."""
     if isinstance(item, Declared):
         reading = adopt(reading, item.name, item.statement)
     elif isinstance(item, DeclaredFact):
         reading = _with_fact(reading, item.name, Fact(item.kind, lower(item.matrix, reading)))
+    elif isinstance(item, DeclaredAtom):
+        reading = adopt_atom(reading, item.name, item.kind, item.of, item.because)
     else:
         reading = adopt_inverse(reading, item)
     return replace(reading, adopted=reading.adopted | {item.name})
@@ -263,6 +307,8 @@ def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
     everything else a relation lhs - rhs = 0 (one a block).
     """
     context, lhs, rhs = reading.context, statement.lhs, statement.rhs
+    if is_scalar(statement):
+        return adopt_scalar(reading, name, statement)
     if statement.relation in FACT_OF:
         matrix = lower(lhs, reading) if _is_zero(rhs) else _difference(statement, reading)
         return _with_fact(reading, name, Fact(FACT_OF[statement.relation], matrix))

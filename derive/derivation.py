@@ -11,10 +11,11 @@ from dataclasses import dataclass, fields
 from itertools import pairwise
 from typing import Literal
 
-from derive.context import DeclaredInverse, Theory, adopt
+from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt
 from derive.display import Displayed
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
+from derive.real import NEGATION, Sign
 from derive.rules import (
     Comparison,
     Grid,
@@ -25,6 +26,7 @@ from derive.rules import (
     replay_uniqueness,
     variation,
 )
+from derive.scalars import RULES, check_scalar, scalar_claims
 from derive.terms import (
     Dot,
     Equation,
@@ -42,14 +44,18 @@ from derive.terms import (
     lower_trace,
 )
 
-Rule = Literal["identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain"]
+Rule = Literal[
+    "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
+    "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
+]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
-PARTS: Mapping[Rule, str] = {
-    "positivity": "positivity",
-    "comparison": "comparison",
-    "uniqueness": "uniqueness",
-    "chain": "links",
-}  # the part of a proof that a rule replays, where it is not the identities
+PARTS: Mapping[str, tuple[str, ...]] = {
+    "positivity": ("positivity",),
+    "comparison": ("comparison",),
+    "uniqueness": ("uniqueness",),
+    "chain": ("links",),
+    **dict.fromkeys(RULES, ("sign", "links")),
+}  # the parts of a proof that a rule replays, where they are not the identities
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
 
@@ -62,6 +68,7 @@ class Proof:
     comparison: Comparison | None = None
     uniqueness: Uniqueness | None = None
     links: tuple[str, ...] = ()
+    sign: Sign | None = None
 
     def relations(self) -> set[str]:
         """Return the names of the relations and facts that the proof uses."""
@@ -76,7 +83,10 @@ class Proof:
             names |= {self.comparison.stable, self.comparison.forcing}
         if self.uniqueness:
             addends += self.uniqueness.rate_terms + self.uniqueness.initial_terms
-        return names | {t.relation for t in addends}
+        if self.sign:
+            addends += self.sign.terms
+            names |= {fact for product in self.sign.products for fact in product.facts}
+        return (names | {t.relation for t in addends}) - {NEGATION}
 
 
 @dataclass(frozen=True)
@@ -104,6 +114,8 @@ def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificat
     agree. trace: under the trace. gradient: the directional derivative of the trace along H is tr(G' H).
     """
     lhs, rhs = statement.lhs, statement.rhs
+    if rule in ("scalar", "same rate"):
+        return [Certificate(claim) for claim in scalar_claims(statement, rule, reading)]
     if rule == "gradient":
         return [Certificate(_gradient_claim(lhs, rhs, reading), trace=True)]
     if rule == "trace":
@@ -156,11 +168,16 @@ def order_claim(statement: Equation, reading: Reading) -> Grid:
 def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     """Replay one step, or raise Rejected."""
     context, proof = reading.context, step.proof
-    wanted = PARTS.get(step.rule, "identities")
-    if any(getattr(proof, f.name) and f.name != wanted for f in fields(proof)):
-        raise Rejected(f"a proof by the rule {step.rule!r} has {wanted} and nothing else")
+    parts = PARTS.get(step.rule, ("identities",))
+    if any(getattr(proof, f.name) and f.name not in parts for f in fields(proof)):
+        raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
     if step.rule == "chain":
         _check_chain(step, earlier)
+    elif step.rule in RULES:
+        links = [earlier[name].statement for name in proof.links if name in earlier]
+        if len(links) != len(proof.links):
+            raise Rejected("it rests on a step that is not proved before it")
+        check_scalar(step.statement, step.rule, proof.sign, links, reading)
     elif step.rule in ("positivity", "comparison"):
         grid = order_claim(step.statement, reading)
         if step.rule == "positivity" and proof.positivity:
@@ -328,9 +345,9 @@ class Lecture(Displayed):
         """Return the definitions and hypotheses that a step rests on, through lemmas and the reasons of inverses."""
         step = next((s for s in self.steps if s.name == name), None)
         item = self.theory.declared.get(name)
-        if step is None and not isinstance(item, DeclaredInverse):
+        if step is None and not (isinstance(item, (DeclaredInverse, DeclaredAtom)) and item.because):
             return frozenset({name})
-        because = item.because if isinstance(item, DeclaredInverse) else ()
+        because = item.because if isinstance(item, (DeclaredInverse, DeclaredAtom)) else ()
         below = (*step.uses, *step.proof.links) if step else (because,) if isinstance(because, str) else because
         return frozenset().union(*map(self.rests_on, below))
 

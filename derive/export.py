@@ -11,6 +11,7 @@ from operator import mul
 from typing import Any
 
 from derive.errors import InputError
+from derive.functions import is_scalar
 from derive.latex import latex
 from derive.terms import (
     Block,
@@ -41,12 +42,25 @@ def to_sympy(statement: Term | Equation) -> Any:
     """
     import sympy
 
+    if isinstance(statement, Equation) and is_scalar(statement):
+        return _numbers(statement)
     if isinstance(statement, Term):
         return _matrix(statement, shape(statement))
     if statement.relation not in ("=", ":="):
         raise InputError(f"{latex(statement)}: expected an equation, got the relation {statement.relation}")
     wanted = next((s for s in map(shape, (statement.lhs, statement.rhs)) if s != NOTHING), NOTHING)
     return sympy.Eq(_matrix(statement.lhs, wanted), _matrix(statement.rhs, wanted), evaluate=False)
+
+
+def _numbers(statement: Equation) -> Any:
+    """Return a statement about real scalars, an equation or an inequality."""
+    import sympy
+
+    from derive.scalar.formula import real_expression
+
+    relations = {"=": sympy.Eq, ":=": sympy.Eq, "≥": sympy.Ge, ">": sympy.Gt, "≠": sympy.Ne}
+    left, right = real_expression(statement.lhs), real_expression(statement.rhs)
+    return relations[statement.relation](left, right, evaluate=False)
 
 
 def shape(term: Term) -> tuple[str, str]:

@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from derive import derivation, kernel, rules, terms
+from derive import derivation, functions, kernel, real, rules, terms
 from derive.context import Theory
 from derive.derivation import Proof, Step
 from derive.errors import InputError
@@ -27,7 +27,9 @@ from derive.wellformed import CHECKS, LENGTH, a_dict, a_list, check_time, check_
 
 DEPTH = 64  # nesting of terms
 NODES: Mapping[str, type[Term]] = {
-    cls.__name__: cls for cls in vars(terms).values() if isinstance(cls, type) and issubclass(cls, Term) and cls != Term
+    cls.__name__: cls
+    for cls in (*vars(terms).values(), *vars(functions).values())
+    if isinstance(cls, type) and issubclass(cls, Term) and cls != Term
 }
 SCHEMAS: Mapping[str, str] = {
     "identities": "derive-certificate/1",
@@ -35,6 +37,7 @@ SCHEMAS: Mapping[str, str] = {
     "comparison": "derive-comparison/1",
     "uniqueness": "derive-uniqueness/1",
     "links": "derive-chain/1",
+    "sign": "derive-sign/1",
 }
 RATIONAL = re.compile(r"-?[0-9]{1,400}(/[1-9][0-9]{0,399})?")
 T = TypeVar("T")
@@ -222,8 +225,8 @@ class Reader:
 @cache
 def hints(cls: type) -> dict[str, Any]:
     """Return the resolved types of a dataclass's fields."""
-    names = {**vars(terms), **vars(rules), **vars(derivation), **vars(kernel)}
-    module = next(m for m in (terms, rules, derivation, kernel) if m.__name__ == cls.__module__)
+    names = {**vars(terms), **vars(functions), **vars(real), **vars(rules), **vars(derivation), **vars(kernel)}
+    module = next(m for m in (terms, functions, real, rules, derivation, kernel) if m.__name__ == cls.__module__)
     return get_type_hints(cls, {**names, **vars(module)})
 
 

@@ -12,6 +12,7 @@ from fractions import Fraction
 
 from derive.display import Displayed
 from derive.kernel import Poly, Rejected, identity, parts
+from derive.real import Real
 from derive.rules import Context, Grid, differentiate, expect, sift, substitute
 
 Size = str
@@ -213,7 +214,7 @@ class Image(Term):
 
 @dataclass(frozen=True)
 class Equation(Displayed):
-    """A statement lhs relation rhs; relation is one of = := ⪰ ≻ (Loewner order)."""
+    """A statement lhs relation rhs; relation is one of = := ⪰ ≻ (Loewner order), between scalars also ≥ > ≠."""
 
     lhs: Term
     relation: str
@@ -241,8 +242,8 @@ class MissingInverse(Rejected):
 class Reading:
     """What a term is read in.
 
-    The kernel's context, declared inverses, named maps of letters, the names of the adopted declarations, and which
-    declaration or lemma each entry of the tables of derivatives and moments comes from.
+    The kernel's context, declared inverses, named maps of letters, the names of the adopted declarations, which
+    declaration or lemma each entry of the tables of derivatives and moments comes from, and what is known of scalars.
     """
 
     context: Context
@@ -250,6 +251,7 @@ class Reading:
     maps: Mapping[str, Mapping[str, Poly]] = field(default_factory=dict[str, Mapping[str, Poly]])
     adopted: frozenset[str] = frozenset()
     origins: Mapping[str | tuple[str, str], str] = field(default_factory=dict["str | tuple[str, str]", str])
+    real: Real = field(default_factory=Real)
 
 
 def grid_map(function: Callable[[Poly], Poly], grid: Grid) -> Grid:

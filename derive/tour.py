@@ -18,7 +18,7 @@ from derive.notes.markdown import markdown
 from derive.notes.model import Block, Document, Figure, Inline, Link, Note, Para, Section, Table, document_of, join
 from derive.numeric.plant import Plant
 from derive.replay import Report, verify_file
-from derive.theory import LECTURES, lecture
+from derive.theory import IN_TOUR, lecture
 from derive.worked import worked_example
 
 __all__ = ["Summary", "write_certificates", "write_tour"]
@@ -108,7 +108,7 @@ def write_certificates(folder: Path, progress: Callable[[str], None] = lambda _:
     """Write each lecture with its certificates, replay the file, and lay the lecture out with those verdicts."""
     make_folder(folder / "certificates")
     chapters: list[Chapter] = []
-    for key in LECTURES:
+    for key in IN_TOUR:
         progress(f"proving {key}")
         current, path = lecture(key), folder / "certificates" / f"{key}.json"
         write(path, json.dumps(lecture_to_json(current), ensure_ascii=False, indent=1) + "\n")

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
+from derive.functions import Abs, Arctan, Definite, Exp, Infinity, Limit, Log, Max, Power, Quotient, Rate, Root, Start
 from derive.latex.alphabet import GREEK
 from derive.terms import (
     Block,
@@ -108,13 +109,20 @@ class Fenced:
 
 
 @dataclass(frozen=True)
+class Radical:
+    """A square root."""
+
+    body: Box
+
+
+@dataclass(frozen=True)
 class Table:
     """Rows of cells between square brackets."""
 
     rows: tuple[tuple[Box, ...], ...]
 
 
-Box = Letter | Digits | Op | Row | Scripted | Accented | Over | Fenced | Table
+Box = Letter | Digits | Op | Row | Scripted | Accented | Over | Fenced | Radical | Table
 
 
 def parts(box: Box) -> Iterator[Box]:
@@ -128,7 +136,7 @@ def parts(box: Box) -> Iterator[Box]:
             yield base
         case Over(top, bottom):
             yield from (top, bottom)
-        case Fenced(body):
+        case Fenced(body) | Radical(body):
             yield body
         case Table(rows):
             yield from (cell for row in rows for cell in row)
@@ -168,7 +176,7 @@ def width(box: Box) -> float:
             return width(base) + 0.7 * max((width(b) for b in (sub, sup) if b is not None), default=0.0)
         case Over(top, bottom, small):
             return (0.7 if small else 1.0) * max(width(top), width(bottom))
-        case Fenced(body):
+        case Fenced(body) | Radical(body):
             return width(body) + 0.8
         case Table(rows):
             return sum(max(width(r[i]) for r in rows) + 0.8 for i in range(len(rows[0]))) + 0.4
@@ -201,11 +209,13 @@ def level(term: Term) -> int:
             return PRODUCT
         case Dot(Symbol() as symbol):
             return level(symbol)
-        case Dot() | Integral() | Gradient():
+        case Dot() | Integral() | Gradient() | Definite() | Rate() | Limit() | Log() | Arctan():
             return OPEN
+        case Quotient():
+            return PRODUCT
         case Number(value):
             return ATOM if value.denominator == 1 else PRODUCT
-        case Transpose() | Inverse():
+        case Transpose() | Inverse() | Power() | Exp():
             return POWER
         case Symbol(glyph=Glyph(sup=sup)):
             return POWER if sup else ATOM
@@ -259,6 +269,16 @@ def layout(term: Term | Equation) -> Box:
             return row((Letter("δ"), Op(APPLY, "tight"), Fenced(difference)))
         case Neg() | Number() | Product():
             return _product(term)
+        case Root(body):
+            return Radical(layout(body))
+        case Quotient(top, bottom):
+            return Over(layout(top), layout(bottom))
+        case Power(body, exponent):
+            return _power(body, Digits(str(exponent)))
+        case Infinity():
+            return Letter("∞")
+        case Abs() | Max() | Exp() | Log() | Arctan() | Rate() | Start() | Limit() | Definite():
+            return _function(term)
         case _:
             return _operator(term)
 
@@ -350,6 +370,36 @@ def _power(body: Term, exponent: Box) -> Box:
     if isinstance(base, Scripted):
         return Scripted(base.base, base.sub, exponent)
     return Scripted(base, None, exponent)
+
+
+def _function(term: Term) -> Box:
+    """Lay out a function, limit or integral of real analysis."""
+    match term:
+        case Abs(body):
+            return Fenced(layout(body), "|", "|")
+        case Max(body):
+            return _applied(Letter("max", upright=True), [Digits("0"), layout(body)])
+        case Exp(body):
+            return Scripted(Letter("e", upright=True), None, layout(body))
+        case Log(body) | Arctan(body):
+            name = Letter("ln" if isinstance(term, Log) else "arctan", upright=True)
+            closed = layout(body) if level(body) == ATOM else Fenced(layout(body))
+            return row((name, Op(APPLY, "tight"), closed))
+        case Rate(body, symbol):
+            d, closed = Letter("d", upright=True), at_least(body, POWER)
+            return row((Over(d, row((d, layout(symbol)))), Op(APPLY, "tight"), closed))
+        case Start(body, symbol):
+            where = row((layout(symbol), Op("=", "tight"), Digits("0")))
+            return Scripted(Fenced(layout(body), "[", "]"), where)
+        case Limit(body, symbol, point):
+            where = row((layout(symbol), Op("→", "tight"), layout(point)))
+            return row((Scripted(Letter("lim", upright=True), where), Op(APPLY, "tight"), at_least(body, PRODUCT)))
+        case Definite(body, symbol, lower, upper):
+            sign = Scripted(Op(INTEGRAL, "prefix"), layout(lower), layout(upper))
+            differential = row((Op(THIN, "tight"), Letter("d", upright=True), layout(symbol)))
+            return row((sign, at_least(body, OPEN), differential))
+        case _:
+            raise TypeError(f"no layout for {type(term).__name__}")
 
 
 def _operator(term: Term) -> Box:

@@ -15,6 +15,7 @@ from derive.latex.layout import (
     Letter,
     Op,
     Over,
+    Radical,
     Row,
     Scripted,
     Table,
@@ -63,6 +64,8 @@ def markup(box: Box) -> str:
             return f"<mfrac{style}>{markup(top)}{markup(bottom)}</mfrac>"
         case Fenced():
             return f"<mrow>{_fenced(box)}</mrow>"
+        case Radical(body):
+            return f"<msqrt>{_many(body)}</msqrt>"
         case Table(rows):
             cells = ("".join(f"<mtd>{_many(c)}</mtd>" for c in r) for r in rows)
             return f"<mrow><mo>[</mo><mtable>{''.join(f'<mtr>{c}</mtr>' for c in cells)}</mtable><mo>]</mo></mrow>"

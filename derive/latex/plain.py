@@ -17,6 +17,7 @@ from derive.latex.layout import (
     Letter,
     Op,
     Over,
+    Radical,
     Row,
     Scripted,
     Table,
@@ -51,11 +52,19 @@ def text(box: Box) -> str:
         case Accented(base, accent):
             return text(base) + ACCENTS[accent][2]
         case Over(top, bottom):
-            return f"{text(top)}/{text(bottom)} " if not isinstance(top, Digits) else f"{text(top)}/{text(bottom)}"
+            return f"{_part(top)}/{_part(bottom)}" + " " * (not isinstance(top, Digits))
         case Fenced(body, left, right):
             return left + text(body) + right
+        case Radical(body):
+            return f"sqrt({text(body)})"
         case Table(rows):
             return "[" + "; ".join(", ".join(map(text, r)) for r in rows) + "]"
+
+
+def _part(box: Box) -> str:
+    """Print a part of a fraction, in parentheses unless it is a single box or the sign of a derivative."""
+    derivative = isinstance(box, Row) and box.items[0] in (Letter("d", upright=True), Op("∂", "tight"))
+    return f"({text(box)})" if isinstance(box, Row) and not derivative else text(box)
 
 
 def _group(script: str) -> str:

@@ -17,6 +17,7 @@ from derive.latex.layout import (
     Letter,
     Op,
     Over,
+    Radical,
     Row,
     Scripted,
     Table,
@@ -28,6 +29,7 @@ from derive.terms import Equation, Term
 COMMANDS = {char: "\\" + name for name, char in GREEK.items()}
 COMMANDS |= {"𝔼": r"\mathbb{E}", **{s: rf"\mathcal{{{chr(ord('A') + i)}}}" for i, s in enumerate(SCRIPT)}}
 SPACES = {TIMES: " ", APPLY: "", THIN: r"\,"}
+NAMES = frozenset(("tr", "max", "ln", "arctan", "lim"))
 ENDS_IN_COMMAND = re.compile(r"\\[A-Za-z]+$")
 
 
@@ -58,6 +60,8 @@ def tex(box: Box) -> str:
             return _fraction(tex(top), tex(bottom), small)
         case Fenced(body, left, right):
             return rf"\left{left}{tex(body)}\right{right}" if tall(box) else f"{left}{tex(body)}{right}"
+        case Radical(body):
+            return rf"\sqrt{{{tex(body)}}}"
         case Table(rows):
             lines = r" \\ ".join(" & ".join(map(tex, r)) for r in rows)
             return rf"\begin{{bmatrix}} {lines} \end{{bmatrix}}"
@@ -67,7 +71,7 @@ def _letter(text: str, upright: bool) -> str:
     if text in COMMANDS:
         return COMMANDS[text]
     if len(text) > 1:
-        return rf"\operatorname{{{text}}}" if text == "tr" else rf"\mathrm{{{text}}}"
+        return rf"\operatorname{{{text}}}" if text in NAMES else rf"\mathrm{{{text}}}"
     return rf"\mathrm{{{text}}}" if upright else text
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from derive.errors import InputError
 
-STRETCHY = "()[]{}|∫ˆ˙¯˜̂̇̄̃"
+STRETCHY = "()[]{}|√∫ˆ˙¯˜̂̇̄̃"
 FEATURES = ["ccmp", "kern", "ssty"]
 
 

@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Literal
 
 from derive.catalogue import DOCUMENTS
-from derive.context import Declared, DeclaredFact, DeclaredInverse
+from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse
 from derive.derivation import Derived, Erratum, Evidence, Given, Heading, Item, Lecture, Outcome, Paragraph, Rule, Step
 from derive.terms import Dot, Equation, Expect, Inverse, Number, Symbol, Term
 
@@ -52,6 +52,13 @@ RULES: dict[Rule, str] = {
     "comparison": "comparison",
     "uniqueness": "uniqueness",
     "chain": "chain",
+    "scalar": "identity of real numbers",
+    "same rate": "equal derivatives, equal start",
+    "sign": "signs",
+    "both": "both inequalities",
+    "squeeze": "limit by comparison",
+    "integral": "antiderivative and its limits",
+    "same argument": "equal arguments",
 }
 SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 
@@ -300,9 +307,11 @@ class _Layout:
             return lhs if step.statement.relation == "=" and isinstance(lhs, (Symbol, Expect, Dot)) else name
         if isinstance(item, DeclaredInverse):
             return Inverse(item.of)
+        if isinstance(item, DeclaredAtom):
+            return None
         if isinstance(item, Declared):
             lhs = item.statement.lhs
-            if item.statement.relation in ("⪰", "≻"):
+            if item.statement.relation in ("⪰", "≻", "≥", ">", "≠"):
                 return item.statement
             return lhs if isinstance(lhs, (Symbol, Expect, Dot)) else item.text or name
         if re.fullmatch(r"I\w+", name) and name not in self.anchors:

@@ -12,20 +12,23 @@ if TYPE_CHECKING:
     from derive.context import Theory
     from derive.derivation import Lecture
 
-__all__ = ["LECTURES", "THEORIES", "lecture", "theory"]
+__all__ = ["IN_TOUR", "LECTURES", "THEORIES", "lecture", "theory"]
 
 LECTURES = {
     "observer": "derive.theory.observer",
     "covariance": "derive.theory.covariance",
     "luenberger": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
+    "scalar": "derive.theory.scalar",
     "duality": "derive.theory.duality",
 }
+IN_TOUR = tuple(key for key in LECTURES if key != "scalar")  # its page is half as long as all the others together
 THEORIES = {
     "observer-ct": "derive.theory.observer",
     "covariance-ct": "derive.theory.covariance",
     "luenberger-dt": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
+    "scalar": "derive.theory.scalar",
     "duality": "derive.theory.duality",
     "lqr-dt": "derive.theory.regulator:discrete",
     "lqr-ct": "derive.theory.regulator:continuous",

@@ -8,10 +8,16 @@ from collections.abc import Callable, Sequence
 
 from tests.benchmark.enclosures import enclosures
 from tests.benchmark.prover import prover
+from tests.benchmark.scalar import scalar
 from tests.benchmark.startup import startup
 from tests.benchmark.table import Row
 
-SECTIONS: dict[str, Callable[[], list[Row]]] = {"enclosures": enclosures, "prover": prover, "startup": startup}
+SECTIONS: dict[str, Callable[[], list[Row]]] = {
+    "enclosures": enclosures,
+    "prover": prover,
+    "scalar": scalar,
+    "startup": startup,
+}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

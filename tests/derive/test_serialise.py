@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from derive import terms
+from derive import functions, terms
 from derive.context import Theory
 from derive.document import document_from_json, lecture_to_json
 from derive.errors import InputError
@@ -58,7 +58,8 @@ def test_every_lecture_round_trips_and_replays(key, tmp_path):
 
 
 def test_every_kind_of_term_can_be_written():
-    kinds = {c for c in vars(terms).values() if isinstance(c, type) and issubclass(c, terms.Term)} - {terms.Term}
+    classes = (*vars(terms).values(), *vars(functions).values())
+    kinds = {c for c in classes if isinstance(c, type) and issubclass(c, terms.Term)} - {terms.Term}
     assert set(NODES.values()) == kinds
     t = theory("observer-ct")
     s = t.symbols

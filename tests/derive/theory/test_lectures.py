@@ -10,8 +10,10 @@ from pathlib import Path
 import pytest
 
 from derive.derivation import check, claims, learn, order_claim
+from derive.functions import value
 from derive.kernel import Rejected
 from derive.matrix.search import prove
+from derive.scalars import RULES
 from derive.terms import Equation, Reading
 from derive.theory import LECTURES, lecture
 from tests.derive.theory.mutants import mutants
@@ -22,6 +24,8 @@ PINNED = Path(__file__).parents[2] / "reference" / "relations.json"
 def meaning(statement: Equation, rule: str, reading: Reading):
     if rule in ("positivity", "comparison", "uniqueness"):
         return order_claim(statement, reading)
+    if rule in RULES:
+        return value(statement.lhs, reading) - value(statement.rhs, reading)
     return [c.claim for c in claims(statement, rule, reading)]
 
 

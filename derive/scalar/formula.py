@@ -1,0 +1,188 @@
+"""Closed forms with their proof: both sides, where they are defined, what they rest on, and exports that agree.
+
+A formula is a proved step of the scalar lecture together with a program that evaluates its right-hand side without
+cancellation. Each branch of the program is the side of a proved step; ``check`` reads both and compares.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from derive.derivation import Lecture, Step
+from derive.errors import InputError
+from derive.functions import Definite, Limit, Rate, replaced, value
+from derive.kernel import Rejected
+from derive.scalar.program import Program
+from derive.terms import Equation, Reading, Symbol, Term
+
+__all__ = ["Formula", "learned"]
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A proved closed form.
+
+    Attributes:
+        name: what it is called in Python.
+        statement: both sides.
+        defined: where it is defined.
+        step: the step of the lecture that proves the statement.
+        roles: steps that say what the value is (root of the equation, sign, closed loop).
+        program: how it is evaluated.
+        lecture: the lecture that holds the steps.
+        source: document and number, if a source has it.
+    """
+
+    name: str
+    statement: Equation
+    defined: str
+    step: str
+    roles: tuple[str, ...]
+    program: Program
+    lecture: Callable[[], Lecture]
+    renamed: tuple[tuple[Symbol, Symbol], ...] = ()
+    source: str = ""
+
+    @property
+    def derivation(self) -> tuple[Step, ...]:
+        """The steps that prove the formula, its branches and what they mean, with certificates."""
+        names = dict.fromkeys((self.step, *self.roles, *(b.step for b in self.program.branches)))
+        lecture = self.lecture()
+        return tuple(lecture.step(name) for name in names if name in {s.name for s in lecture.steps})
+
+    @property
+    def hypotheses(self) -> tuple[str, ...]:
+        """The definitions, hypotheses and cases that the derivation rests on."""
+        lecture = self.lecture()
+        return tuple(sorted(frozenset().union(*(lecture.rests_on(s.name) for s in self.derivation))))
+
+    @property
+    def sympy(self) -> Any:
+        """The statement as a SymPy equation of real symbols."""
+        import sympy
+
+        return sympy.Eq(real_expression(self.statement.lhs), real_expression(self.statement.rhs), evaluate=False)
+
+    def latex(self) -> str:
+        """Return the statement as LaTeX."""
+        from derive.latex import latex
+
+        return latex(self.statement)
+
+    def _repr_latex_(self) -> str:
+        return f"${self.latex()}$"
+
+    def to_numpy(self) -> Callable[..., Any]:
+        """Return a function of arrays; NaN where the formula is not defined."""
+        return self.program.to_numpy()
+
+    def to_casadi(self) -> Any:
+        """Return a CasADi function."""
+        return self.program.to_casadi()
+
+    def to_c(self) -> str:
+        """Return C source text."""
+        return self.program.to_c()
+
+    def to_javascript(self) -> str:
+        """Return JavaScript source text."""
+        return self.program.to_javascript()
+
+    def check(self) -> None:
+        """Replay the lecture, and compare every branch of the program with the side of the step that proves it.
+
+        Raises:
+            InputError: a step is not accepted, or a branch computes something else than its step says.
+        """
+        lecture, back = self.lecture(), tuple((new, old) for old, new in self.renamed)
+        reading, accepted = learned(lecture.key)
+        lost = [s.name for s in self.derivation if s.name not in accepted]
+        if lost:
+            raise InputError(f"{self.name}: the step {lost[0]!r} is rejected")
+        for let in self.program.lets:
+            if not _same(rename(let.body, back), rename(let.symbol, back), reading):
+                raise InputError(f"{self.name}: {let.symbol.name} is not what the step that defines it says")
+        for branch in self.program.branches:
+            step = lecture.step(branch.step).statement
+            if not any(_same(rename(branch.body, back), side, reading) for side in (step.rhs, step.lhs)):
+                raise InputError(f"{self.name}: a branch is not what the step {branch.step!r} proves")
+
+
+def rename(term: Term, pairs: tuple[tuple[Symbol, Symbol], ...]) -> Term:
+    """Replace symbols by symbols, all at once."""
+    marks = [Symbol(f"\0{i}", scalar=True) for i in range(len(pairs))]
+    for (old, _), mark in zip(pairs, marks, strict=True):
+        term = replaced(term, old, mark)
+    for (_, new), mark in zip(pairs, marks, strict=True):
+        term = replaced(term, mark, new)
+    return term
+
+
+@cache
+def learned(key: str) -> tuple[Reading, frozenset[str]]:
+    """Return what may be used at the end of a lecture, and the steps that were replayed and accepted."""
+    from derive.derivation import learn, verify
+    from derive.theory import lecture
+
+    current = lecture(key)
+    accepted = {o.step for o in verify(current.theory, current.steps) if o.accepted}
+    reading = current.theory.reading()
+    for step in current.steps:
+        if step.name in accepted:
+            reading = learn(reading, current.theory, step)
+    return reading, frozenset(accepted)
+
+
+def _same(one: Term, two: Term, reading: Reading) -> bool:
+    """Tell whether two terms are the same number, definitions unfolded."""
+    from derive.scalar.search import closure, prove_identity
+
+    try:
+        claim = value(one, reading) - value(two, reading)
+    except Rejected:
+        return False
+    relations = closure([claim], reading.real, reading.context.relations)
+    return not claim.terms or prove_identity(claim, relations, list(reading.real.atoms), 2.0) is not None
+
+
+def real_expression(term: Term) -> Any:
+    """Return a term about scalars as a SymPy expression of real symbols."""
+    import sympy
+
+    from derive import functions as f
+    from derive import terms as t
+
+    below = [
+        real_expression(child) for child in term.children() if not isinstance(term, (Limit, Definite, Rate, f.Start))
+    ]
+    simple: Mapping[type[Term], Callable[..., Any]] = {
+        t.Sum: lambda *a: sympy.Add(*a), t.Product: lambda *a: sympy.Mul(*a), t.Neg: lambda a: -a,
+        f.Quotient: lambda a, b: a / b, f.Root: sympy.sqrt, f.Abs: sympy.Abs, f.Max: lambda a: sympy.Max(0, a),
+        f.Exp: sympy.exp, f.Log: sympy.log, f.Arctan: sympy.atan, f.Infinity: lambda: sympy.oo,
+    }  # fmt: skip
+    match term:
+        case t.Symbol(name="π"):
+            return sympy.pi
+        case t.Symbol():
+            return sympy.Symbol(term.name, real=True)
+        case t.Number(number):
+            return sympy.Rational(number.numerator, number.denominator)
+        case t.Zero():
+            return sympy.S.Zero
+        case f.Power(_, exponent):
+            return below[0] ** exponent
+        case Definite(body, symbol, lower, upper):
+            return sympy.Integral(
+                real_expression(body), (real_expression(symbol), real_expression(lower), real_expression(upper))
+            )
+        case Limit(body, symbol, point):
+            return sympy.Limit(real_expression(body), real_expression(symbol), real_expression(point))
+        case f.Start(body, symbol):
+            return sympy.Subs(real_expression(body), real_expression(symbol), 0)
+        case Rate(body, symbol):
+            return sympy.Derivative(real_expression(body), real_expression(symbol))
+        case _:
+            return simple[type(term)](*below)

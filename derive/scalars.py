@@ -1,0 +1,185 @@
+"""How statements about real scalars are proved and taken up: the rules beside the kernel's identity for scalars.
+
+scalar: the difference of both sides is zero, an identity. same rate: both sides have the same derivative in t and the
+same value at 0. sign: >=, > or ≠ by a certificate of sign. both: a = b from a >= b and b >= a. squeeze: the limit of f
+is v, because f - v and v - f are at most b and the limit of b is zero. integral: from an antiderivative and its limits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from derive.functions import Definite, Infinity, Limit, Log, Rate, point_of, value
+from derive.kernel import Poly, Rejected
+from derive.real import (
+    SIGNS,
+    ZERO,
+    Atom,
+    Sign,
+    at_origin,
+    atom_facts,
+    atom_relation,
+    derivative,
+    log_facts,
+    needs,
+    replay_sign,
+    scalar,
+    scalars_of,
+)
+from derive.rules import Fact
+from derive.terms import Equation, MissingInverse, Reading, Symbol, Term
+
+RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument"})
+TIME = "t"
+
+
+# ------------------------------------------------------------------------------------------------ taking up
+def adopt_scalar(reading: Reading, name: str, statement: Equation) -> Reading:
+    """Extend a reading by a statement about scalars that is declared or proved."""
+    lhs, rhs = statement.lhs, statement.rhs
+    real, context = reading.real, reading.context
+    if statement.relation in SIGNS:
+        difference = value(lhs, reading) - value(rhs, reading)
+        fact = Fact(SIGNS[statement.relation], ((difference,),))
+        return replace(reading, context=replace(context, facts={**context.facts, name: fact}))
+    match lhs:
+        case Limit(body, symbol, point):
+            limited = value(body, reading)
+            if len(limited.terms) == 1:
+                (((m, _), c),) = limited.terms.items()
+                key = (symbol.name, point_of(point), m)
+                if key not in real.limits:
+                    real = replace(real, limits={**real.limits, key: value(rhs, reading).scale(1 / c)})
+            return replace(reading, real=real)
+        case Symbol() if statement.relation == ":=":
+            atom = Atom(lhs.name, "defined", value(rhs, reading))
+            _check_order(atom, reading)
+            reading = replace(reading, real=replace(real, atoms={**real.atoms, lhs.name: atom}))
+        case _:
+            pass
+    difference = value(lhs, reading) - value(rhs, reading)
+    return replace(reading, context=replace(context, relations={**context.relations, name: difference}))
+
+
+def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -> Reading:
+    """Extend a reading by an atom, once the fact is there that makes it defined.
+
+    Raises:
+        MissingInverse: the reason, or an atom within, is not there yet.
+        Rejected: the reason is about something else.
+    """
+    try:
+        atom = Atom(name, kind, value(of, reading))
+    except Rejected as error:
+        raise MissingInverse(str(error)) from None
+    context, wanted = reading.context, needs(kind)
+    if wanted or because:
+        fact = context.facts.get(because)
+        if fact is None:
+            raise MissingInverse(f"{because} not proved yet")
+        turned = ((-atom.of,),)
+        negative = "negative" in wanted and fact.kind == "positive" and fact.matrix == turned
+        if not negative and (fact.matrix != ((atom.of,),) or fact.kind not in (wanted or ("positive",))):
+            raise Rejected(f"{because} is not a reason why {name} exists")
+    _check_order(atom, reading)
+    relation, facts = atom_relation(atom), atom_facts(atom)
+    if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
+        facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
+    real = replace(reading.real, atoms={**reading.real.atoms, name: atom})
+    facts |= log_facts(name, real) if kind == "log" else {}
+    relations = {**context.relations, **({name: relation} if relation is not None else {})}
+    context = replace(context, relations=relations, facts={**context.facts, **facts})
+    return replace(reading, context=context, real=real)
+
+
+def _check_order(atom: Atom, reading: Reading) -> None:
+    """Reject a scalar that is declared twice, or that what it stands for, or an atom or relation, already uses."""
+    used = {s for a in reading.real.atoms.values() for s in scalars_of(a.of)} | scalars_of(atom.of)
+    if atom.name in reading.real.atoms or atom.name in used:
+        raise Rejected(f"{atom.name} is used before it is declared")
+
+
+# ------------------------------------------------------------------------------------------------ proving
+def scalar_claims(statement: Equation, rule: str, reading: Reading) -> list[Poly]:
+    """Return the polynomials to be shown zero: the difference, or its derivative in t and its value at 0."""
+    if rule == "scalar":
+        return [value(statement.lhs, reading) - value(statement.rhs, reading)]
+    difference = value(statement.lhs, reading) - value(statement.rhs, reading)
+    return [derivative(difference, TIME, reading.real), at_origin(difference, TIME, reading.real)]
+
+
+def check_scalar(
+    statement: Equation, rule: str, sign: Sign | None, links: Sequence[Equation], reading: Reading
+) -> None:
+    """Replay a step by one of the rules for scalars, or raise Rejected."""
+    if rule == "sign":
+        if sign is None:
+            raise Rejected("the proof is of another kind than the rule")
+        claim = value(statement.lhs, reading) - value(statement.rhs, reading)
+        replay_sign(sign, claim, statement.relation, reading.context)
+        return
+    if statement.relation != "=":
+        raise Rejected(f"the rule {rule!r} proves equations, not {statement.relation}")
+    checks = {
+        "both": _check_both, "squeeze": _check_squeeze, "integral": _check_integral, "same argument": _check_argument
+    }  # fmt: skip
+    checks[rule](statement, links, reading)
+
+
+def _check_both(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
+    difference = value(statement.lhs, reading) - value(statement.rhs, reading)
+    shown = [value(e.lhs, reading) - value(e.rhs, reading) for e in links if e.relation in ("≥", ">", "=")]
+    if len(shown) != 2 or difference not in shown or -difference not in shown:
+        raise Rejected("the two inequalities do not make this equation")
+
+
+def _check_argument(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
+    """Accept f(u) = f(v) from u = v: for a logarithm, or an integral over 0 to infinity."""
+    match statement, links:
+        case Equation(Log(u), "=", Log(v)), [Equation(a, "=", b)] if (u, v) == (a, b):
+            value(statement.lhs, reading), value(statement.rhs, reading)
+        case (
+            Equation(Definite(f, x, low, Infinity()), "=", Definite(g, y, bottom, Infinity())),
+            [Equation(a, "=", b)],
+        ) if (f, g, x, low) == (a, b, y, bottom):
+            value(statement.lhs, reading), value(statement.rhs, reading)
+        case _:
+            raise Rejected("the arguments are not what the link says")
+
+
+def _check_squeeze(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
+    """Accept lim f = v from b >= f - v and b >= v - f, where lim b = 0."""
+    match statement.lhs, links:
+        case Limit(body, symbol, point), [Equation(b, "≥", above), Equation(c, "≥", below)] if b == c:
+            gap = value(body, reading) - value(statement.rhs, reading)
+            if (value(above, reading), value(below, reading)) != (gap, -gap):
+                raise Rejected("the bounds are on something else")
+            if value(Limit(b, symbol, point), reading) != ZERO or _moves(statement.rhs, symbol, reading):
+                raise Rejected("the bound does not tend to zero")
+        case _:
+            raise Rejected("a squeeze needs a limit and two bounds")
+
+
+def _moves(term: Term, symbol: Symbol, reading: Reading) -> bool:
+    return any(reading.real.varies(s, symbol.name) for s in scalars_of(value(term, reading)))
+
+
+def _check_integral(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
+    """Accept the integral of f from 0 to infinity: d G = f, and the difference of the limits of G."""
+    match statement.lhs, links:
+        case (
+            Definite(f, x, lower, Infinity() as upper),
+            [
+                Equation(Rate(G, x1), "=", f1),
+                Equation(Limit(G2, x2, Infinity()), "=", above),
+                Equation(Limit(G3, x3, low), "=", below),
+            ],
+        ) if x1 == x2 == x3 == x and G == G2 == G3 and f == f1:
+            value(statement.lhs, reading)
+            if point_of(lower) != "0" or point_of(low) != "0" or point_of(upper) == "0":
+                raise Rejected("the limits are at other ends than the integral")
+            if value(statement.rhs, reading) != value(above, reading) - value(below, reading):
+                raise Rejected("the value is not the difference of the limits")
+        case _:
+            raise Rejected("an integral needs an antiderivative of its integrand, and its limits at both ends")

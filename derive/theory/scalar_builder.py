@@ -1,0 +1,195 @@
+"""Write a lecture about real scalars: the prover searches identities and signs, the kernel replays them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from derive.context import Declared, DeclaredAtom, names_of
+from derive.derivation import Derived, Proof, Rule, Step, Text
+from derive.functions import Definite, Limit, Rate, Start, value
+from derive.kernel import Poly, Rejected
+from derive.kernel import Term as Addend
+from derive.real import scalars_of
+from derive.scalar.search import closure, prove_identity, prove_sign
+from derive.terms import Equation, Reading, Term
+from derive.theory.builder import Builder, NotDerived
+
+
+def _text(reason: str | Text) -> Text:
+    return (reason,) if isinstance(reason, str) else reason
+
+
+class ScalarBuilder(Builder):
+    """Collect the items of a lecture whose statements are about scalars."""
+
+    def equation(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        using: Sequence[str],
+        rule: Rule,
+        number: str = "",
+        source: str = "",
+        lemma: bool = False,
+    ) -> Step:
+        """Prove one equation without displaying it; a scalar identity unless another rule is named."""
+        rule = "scalar" if rule == "identity" else rule
+        return super().equation(name, statement, reason, using, rule, number, source, lemma)
+
+    def prove(self, claim: Poly, using: Sequence[str], trace: bool = False, label: str = "") -> tuple[Addend, ...]:
+        """Find the addends of a certificate from the named relations and the atoms that occur."""
+        relations = self.reading.context.relations
+        named = {r: relations[r] for name in using for r in names_of(name, relations)}
+        near = {**named, **closure([claim, *named.values()], self.reading.real, relations, expand=False)}
+        allowed = {**named, **closure([claim, *named.values()], self.reading.real, relations)}
+        found = prove_identity(claim, near, self.order()) if len(near) < len(allowed) and named else None
+        found = found or prove_identity(claim, allowed, self.order())
+        if found is None:
+            raise NotDerived(f"{self.key}: no certificate for {label} from {', '.join(allowed) or 'nothing'}")
+        return found
+
+    def order(self) -> list[str]:
+        """Return the scalars, those first that others are made of."""
+        return [name for name in self.theory.symbols if self.theory.symbols[name].scalar]
+
+    def sign(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        using: Sequence[str],
+        *,
+        identities: Sequence[str] = (),
+        squares: Sequence[Term] = (),
+        number: str = "",
+        source: str = "",
+        degree: int = 3,
+        alone: bool = False,
+        show: bool = True,
+    ) -> Step:
+        """Prove lhs >=, > or ≠ rhs: were it false, products of nonnegative numbers would add up to less than zero."""
+        context, real = self.reading.context, self.reading.real
+        try:
+            claim = value(statement.lhs, self.reading) - value(statement.rhs, self.reading)
+            extra = [value(term, self.reading) for term in squares]
+        except Rejected as error:
+            raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
+        missing = [f for f in using if f not in context.facts]
+        if missing:
+            raise NotDerived(f"{self.key}: step {name!r}: no fact {', '.join(missing)}")
+        facts = {f: context.facts[f] for f in using}
+        named = {r: context.relations[r] for n in identities for r in names_of(n, context.relations)}
+        polys = [claim, *extra, *named.values(), *(f.matrix[0][0] for f in facts.values())]
+        allowed = named if alone else {**named, **closure(polys, real, context.relations)}
+        known = {s for p in (*polys, *allowed.values()) for s in scalars_of(p)}
+        order = [s for s in self.order() if s in known]
+        found = prove_sign(claim, statement.relation, facts, allowed, order, extra, degree)
+        if found is None:
+            raise NotDerived(f"{self.key}: no certificate of sign for {name} from {', '.join(using) or 'nothing'}")
+        return self._keep(name, statement, "sign", reason, Proof(sign=found), number, source, show)
+
+    def linked(
+        self,
+        name: str,
+        statement: Equation,
+        rule: Rule,
+        reason: str | Text,
+        links: Sequence[str],
+        *,
+        number: str = "",
+        source: str = "",
+        show: bool = True,
+    ) -> Step:
+        """Prove a statement from steps: 'both' inequalities, a 'squeeze', an 'integral'."""
+        return self._keep(name, statement, rule, reason, Proof(links=tuple(links)), number, source, show)
+
+    def equal(
+        self,
+        name: str,
+        statement: Equation,
+        using: Sequence[str],
+        *,
+        identities: Sequence[str] = (),
+        reason: str = "both are nonnegative and have the same square",
+    ) -> Step:
+        """Prove a = b by a >= b and b >= a."""
+        links = f"{name}, one way", f"{name}, the other"
+        for link, e in zip(links, (statement, _turned(statement)), strict=True):
+            self.sign(link, Equation(e.lhs, "≥", e.rhs), reason, using, identities=identities)
+        return self.linked(name, statement, "both", "two inequalities", links)
+
+    def record(self, step: Step) -> Step:
+        """Replay a step and keep it; it also names the cases in which its quotients and roots are defined."""
+        return super().record(
+            replace(
+                step,
+                uses=tuple(dict.fromkeys((*step.uses, *self._consulted(step.statement), *self._cases(step.statement)))),
+            )
+        )
+
+    def _consulted(self, statement: Equation) -> list[str]:
+        """Return the cases and proved limits without which the limits in a statement are not known."""
+        limited = any(isinstance(side, Limit) for side in (statement.lhs, statement.rhs))
+        if not limited or not _reads(statement, self.reading):
+            return []
+        reading, found = self.reading, list[str]()
+        for name in [n for n, d in self.theory.declared.items() if isinstance(d, Declared) and d.case]:
+            facts = {k: v for k, v in reading.context.facts.items() if k != name}
+            if not _reads(statement, replace(reading, context=replace(reading.context, facts=facts))):
+                found.append(name)
+        for name, step in self.steps.items():
+            if isinstance(step.statement.lhs, Limit) and step.rule == "squeeze":
+                known = value(step.statement.lhs.body, reading)
+                limits = {k: v for k, v in reading.real.limits.items() if known.terms.keys() != {(k[2], ())}}
+                if not _reads(statement, replace(reading, real=replace(reading.real, limits=limits))):
+                    found.append(name)
+        return found
+
+    def _cases(self, statement: Equation) -> list[str]:
+        """Return the cases that the atoms in a statement need."""
+        declared, atoms = self.theory.declared, self.reading.real.atoms
+        sides = [s.body if isinstance(s, (Limit, Definite, Rate, Start)) else s for s in (statement.lhs, statement.rhs)]
+        waiting, seen = {s for side in sides for s in scalars_of(value(side, self.reading))}, set[str]()
+        while waiting:
+            name = waiting.pop()
+            seen.add(name)
+            if name in atoms:
+                waiting |= scalars_of(atoms[name].of) - seen
+        reasons = [item.because for name in sorted(seen) if isinstance(item := declared.get(name), DeclaredAtom)]
+        return [r for r in reasons if isinstance(d := declared.get(r), Declared) and d.case]
+
+    def _keep(
+        self,
+        name: str,
+        statement: Equation,
+        rule: Rule,
+        reason: str | Text,
+        proof: Proof,
+        number: str,
+        source: str,
+        show: bool,
+    ) -> Step:
+        from derive.theory.builder import _used
+
+        step = self.record(Step(name, statement, rule, _text(reason), proof, _used(proof), number, source, True))
+        if show:
+            self.items.append(Derived((step,)))
+        return step
+
+    def rate(self, name: str, statement: Equation, reason: str | Text, using: Sequence[str] = ()) -> Step:
+        """Prove f = g because both have the same derivative in t and the same value at 0."""
+        return self.state(name, statement, reason, using, rule="same rate")
+
+
+def _reads(statement: Equation, reading: Reading) -> bool:
+    try:
+        value(statement.lhs, reading), value(statement.rhs, reading)
+    except Rejected:
+        return False
+    return True
+
+
+def _turned(statement: Equation) -> Equation:
+    return Equation(statement.rhs, statement.relation, statement.lhs)
