@@ -13,7 +13,7 @@ from derive.numeric.log_integral import log_integral
 from derive.numeric.modes import Matrix, format_mode
 from derive.numeric.newton import Equation
 from derive.numeric.plant import Plant
-from derive.numeric.spectral_polynomials import ball_of, spectral_polynomials
+from derive.numeric.spectral_polynomials import ball_of, rational, spectral_polynomials
 
 __all__ = [
     "LogDetEnclosure",
@@ -22,6 +22,7 @@ __all__ = [
     "enclose_by_polynomials",
     "enclose_by_quadrature",
     "enclose_log_det",
+    "enclose_unstable_term",
 ]
 
 Way = Literal["eigenvalues", "polynomials", "quadrature"]
@@ -140,6 +141,15 @@ def enclose_by_quadrature(plant: Plant, digits: int = QUADRATURE_DIGITS) -> LogD
         integral = log_integral(p, hints, digits)
         unstable = 2 * _summed(p.feedback, lambda x: _unstable(x, plant))
         return _result(plant, "quadrature", integral + unstable, integral, unstable)
+
+
+def enclose_unstable_term(plant: Plant, digits: int = 20) -> arb:
+    """Enclose 2 sum max(0, Re lambda_i(A)), in discrete time 2 sum max(0, ln |lambda_i(A)|), by the exact det(s - A).
+
+    Without cross term A = F, and this is the `unstable_term` of the plant's `LogDetEnclosure`.
+    """
+    with working_bits(bits_for(digits) + SPARE_BITS):
+        return 2 * _summed(rational(plant.A).charpoly(), lambda x: _unstable(x, plant))
 
 
 def _feedback(plant: Plant) -> Matrix:
