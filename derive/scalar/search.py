@@ -1,22 +1,36 @@
 """Search for certificates about scalars: membership in the ideal of the relations, and contradictions of signs.
 
-SymPy multiplies and divides polynomials here, z3 solves a linear program over the rationals; neither is believed: what
-they find is a certificate that the kernel expands.
+Products of facts are reduced modulo the relations; z3 combines them to zero by a linear program over the rationals.
+Neither is believed: what they find is a certificate that the kernel expands.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import combinations_with_replacement
 from typing import Any
 
-from derive.kernel import ANY, Poly, Term
-from derive.real import NEGATION, Real, Sign, SignProduct, constant, contrary, scalars_of, sign_product
+from derive.kernel import Poly, Term
+from derive.real import (
+    NEGATION,
+    Atom,
+    Real,
+    Sign,
+    SignProduct,
+    atom_relation,
+    constant,
+    contrary,
+    scalars_of,
+    sign_product,
+)
 from derive.rules import Fact
+from derive.scalar.ideal import Form, Ideal, multiply
 
-__all__ = ["Ideal", "closure", "prove_identity", "prove_sign"]
+__all__ = ["closure", "prove_identity", "prove_sign"]
+
+BASIS = 40  # elements of the Groebner basis before signs are searched
 
 
 def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], expand: bool = True) -> dict[str, Poly]:
@@ -24,122 +38,25 @@ def closure(polys: Sequence[Poly], real: Real, relations: Mapping[str, Poly], ex
 
     Without ``expand`` definitions are left out, so that a scalar stays what it is called.
     """
-    found, waiting = dict[str, Poly](), {s for p in polys for s in scalars_of(p)}
-    names = {a.name: name for name, a in _relations_of(real, relations).items()}
-    seen = set[str]()
+    found, waiting, seen = dict[str, Poly](), {s for p in polys for s in scalars_of(p)}, set[str]()
     while waiting:
         s = waiting.pop()
         seen.add(s)
         atom = real.atoms.get(s)
         if atom is not None and (expand or atom.kind != "defined"):
             waiting |= scalars_of(atom.of) - seen
-            if s in names:
-                found[names[s]] = relations[names[s]]
+            name = _relation_of(atom, relations)
+            if name:
+                found[name] = relations[name]
     return dict(sorted(found.items()))
 
 
-def _relations_of(real: Real, relations: Mapping[str, Poly]) -> dict[str, Any]:
-    from derive.real import atom_relation
-
-    out = {name: real.atoms[name] for name in relations if name in real.atoms}
-    wanted = {atom_relation(a): a for a in real.atoms.values() if a.kind == "defined"}
-    return {**out, **{name: wanted[p] for name, p in relations.items() if p in wanted}}
-
-
-class Ideal:
-    """Polynomials that are zero, completed to a Groebner basis on demand; every element knows where it comes from."""
-
-    def __init__(self, relations: Mapping[str, Poly], order: Sequence[str], seconds: float = 30.0):
-        from sympy import QQ, ring
-        from sympy.polys.orderings import lex
-
-        names = list(dict.fromkeys([*order, *(s for p in relations.values() for s in sorted(scalars_of(p)))]))
-        self.index = {name: i for i, name in enumerate(reversed(names))}
-        self.names = list(reversed(names))
-        self.ring = ring([f"x{i}" for i in range(len(names))] or ["x0"], QQ, lex)[0]
-        self.relations = list(relations)
-        self.deadline = time.monotonic() + seconds
-        self.basis: list[tuple[Any, dict[int, Any]]] = []
-        self.pairs: list[tuple[int, int]] = []
-        for i, poly in enumerate(relations.values()):
-            self._add(self.encode(poly), {i: self.ring.one})
-
-    def encode(self, poly: Poly) -> Any:
-        """Return a SymPy polynomial."""
-        from sympy import QQ
-
-        out: dict[Any, Any] = {}
-        for (m, _), c in poly.terms.items():
-            exponents = [0] * self.ring.ngens
-            for s in m:
-                exponents[self.index[s]] += 1
-            out[tuple(exponents)] = QQ(c.numerator, c.denominator)
-        return self.ring.from_dict(out)
-
-    def decode(self, poly: Any) -> Poly:
-        """Return a kernel polynomial."""
-        terms = {
-            (tuple(sorted(s for i, e in enumerate(m) for s in [self.names[i]] * e)), ()): Fraction(
-                int(c.numerator), int(c.denominator)
-            )
-            for m, c in poly.terms()
-        }
-        return Poly({k: c for k, c in terms.items() if c}, ANY, ANY)
-
-    def reduce(self, poly: Any) -> tuple[Any, dict[int, Any]]:
-        """Return the remainder, and the cofactors of the relations that were subtracted."""
-        used: dict[int, Any] = {}
-        if not poly or not self.basis:
-            return poly, used
-        quotients, rest = poly.div([g for g, _ in self.basis])
-        for q, (_, source) in zip(quotients, self.basis, strict=True):
-            if q:
-                for i, h in source.items():
-                    used[i] = used.get(i, self.ring.zero) + q * h
-        return rest, used
-
-    def grow(self) -> bool:
-        """Take up one more element of the Groebner basis; False if there is none, or no time."""
-        while self.pairs and time.monotonic() < self.deadline:
-            i, j = self.pairs.pop(0)
-            (f, source_f), (g, source_g) = self.basis[i], self.basis[j]
-            lcm = tuple(map(max, f.LM, g.LM))
-            if sum(lcm) == sum(f.LM) + sum(g.LM):
-                continue
-            up = [self.ring.from_dict({tuple(a - b for a, b in zip(lcm, h.LM, strict=True)): 1 / h.LC}) for h in (f, g)]
-            rest, used = self.reduce(up[0] * f - up[1] * g)
-            if rest:
-                source = {k: up[0] * h for k, h in source_f.items()}
-                for k, h in source_g.items():
-                    source[k] = source.get(k, self.ring.zero) - up[1] * h
-                for k, h in used.items():
-                    source[k] = source.get(k, self.ring.zero) - h
-                self._add(rest, source)
-                return True
-        return False
-
-    def _add(self, poly: Any, source: dict[int, Any]) -> None:
-        new = len(self.basis)
-        self.basis.append((poly, source))
-        size = lambda pair: sum(map(max, self.basis[pair[0]][0].LM, self.basis[pair[1]][0].LM))  # noqa: E731
-        self.pairs = sorted([*self.pairs, *((i, new) for i in range(new))], key=size)
-
-    def member(self, claim: Poly) -> tuple[Term, ...] | None:
-        """Return the addends that make up a polynomial of the ideal, else None."""
-        rest, total = self.encode(claim), dict[int, Any]()
-        while True:
-            rest, used = self.reduce(rest)
-            for i, h in used.items():
-                total[i] = total.get(i, self.ring.zero) + h
-            if not rest:
-                return tuple(self._terms(total))
-            if not self.grow():
-                return None
-
-    def _terms(self, cofactors: Mapping[int, Any]) -> Iterator[Term]:
-        for i, h in cofactors.items():
-            for (m, _), c in self.decode(h).terms.items():
-                yield Term(c, m, (), self.relations[i], False, ())
+def _relation_of(atom: Atom, relations: Mapping[str, Poly]) -> str | None:
+    """Return the name of the relation that an atom stands for; a definition may have another name than its letter."""
+    if atom.kind != "defined":
+        return atom.name if atom.name in relations else None
+    wanted = atom_relation(atom)
+    return next((name for name, relation in relations.items() if relation == wanted), None)
 
 
 def prove_identity(
@@ -164,13 +81,14 @@ def prove_sign(
     facts = {**facts, **({NEGATION: against} if against else {})}
     relations = {**relations, **({} if against else {NEGATION: claim})}
     ideal = Ideal(relations, [*order, *sorted(scalars_of(claim) - set(order))])
-    while len(ideal.basis) < 40 and ideal.grow():
+    while len(ideal.rules) < BASIS and ideal.grow():
         pass
     whole = tuple(name for name, fact in facts.items() if name != NEGATION and fact.kind != "nonzero")
     direct = [SignProduct(Fraction(1), names, s) for names in ((), whole) for s in ((), *((q,) for q in squares))]
     direct += [SignProduct(Fraction(1), (NEGATION,))] if against else []
+    remainders = Remainders(ideal, facts)
     for d in range(degree + 1):
-        found = _contradiction(list(_products(facts, squares, d)) if d else direct, facts, ideal)
+        found = _contradiction(list(_products(facts, squares, d)) if d else direct, remainders)
         if found:
             total = constant(0)
             for product in found:
@@ -195,25 +113,77 @@ def _products(facts: Mapping[str, Fact], squares: Sequence[Poly], degree: int) -
                 yield SignProduct(Fraction(1), names, (square,))
 
 
-def _contradiction(
-    products: Sequence[SignProduct], facts: Mapping[str, Fact], ideal: Ideal
-) -> list[SignProduct] | None:
+@dataclass
+class Remainders:
+    """The remainders of products modulo an ideal, each from that of the product with one factor less."""
+
+    ideal: Ideal
+    facts: Mapping[str, Fact]
+    known: dict[tuple[tuple[str, ...], tuple[Poly, ...]], Form] = field(default_factory=dict)
+
+    def of(self, names: tuple[str, ...], squares: tuple[Poly, ...]) -> Form:
+        """Return the remainder of a product."""
+        key = names, squares
+        if key not in self.known:
+            self.known[key] = self.ideal.reduce(self._product(names, squares))[0]
+        return self.known[key]
+
+    def _product(self, names: tuple[str, ...], squares: tuple[Poly, ...]) -> Form:
+        if names:
+            factor = self.ideal.encode(self.facts[names[-1]].matrix[0][0])
+            return multiply(self.of(names[:-1], squares), factor)
+        if squares:
+            factor = self.ideal.encode(squares[-1])
+            return multiply(multiply(self.of((), squares[:-1]), factor), factor)
+        return {0: 1}
+
+    def positive(self, product: SignProduct) -> bool:
+        """Tell whether a product is positive rather than only nonnegative."""
+        return not product.squares and all(self.facts[name].kind != "nonnegative" for name in product.facts)
+
+
+def _contradiction(products: Sequence[SignProduct], remainders: Remainders) -> list[SignProduct] | None:
     """Return products with coefficients whose sum is zero in the ideal, one of them positive."""
+    forms = [remainders.of(p.facts, p.squares) for p in products]
+    kept = _possible(forms)
+    strict = [i for i in kept if remainders.positive(products[i])]
+    values = _combination({i: forms[i] for i in kept}, strict) if strict else None
+    if values is None:
+        return None
+    return [SignProduct(c, products[i].facts, products[i].squares) for i, c in values.items() if c]
+
+
+def _possible(forms: Sequence[Form]) -> list[int]:
+    """Return the columns that can have a positive coefficient: no monomial has one sign in all of them."""
+    rows: dict[int, tuple[set[int], set[int]]] = {}
+    for i, form in enumerate(forms):
+        for m, c in form.items():
+            rows.setdefault(m, (set(), set()))[c > 0].add(i)
+    kept, waiting = set(range(len(forms))), list(rows)
+    while waiting:
+        below, above = rows[waiting.pop()]
+        if bool(below) != bool(above):
+            for i in [*below, *above]:
+                kept.discard(i)
+                for m, c in forms[i].items():
+                    rows[m][c > 0].discard(i)
+                    waiting.append(m)
+    return sorted(kept)
+
+
+def _combination(forms: Mapping[int, Form], strict: Sequence[int]) -> dict[int, Fraction] | None:
+    """Return coefficients >= 0 with sum zero, those of the strict columns together at least 1."""
     import z3
 
     context = z3.Context()  # of its own, so that the answer does not depend on what was asked before
-    solver, sums = z3.SolverFor("QF_LRA", context), dict[Any, list[Any]]()
-    unknowns, strict = [z3.Real(f"c{i}", context) for i in range(len(products))], []
-    for product, c in zip(products, unknowns, strict=True):
-        value, positive = sign_product(product, facts)
-        rest, _ = ideal.reduce(ideal.encode(value))
-        for m, k in rest.terms():
-            sums.setdefault(m, []).append(z3.RealVal(f"{int(k.numerator)}/{int(k.denominator)}", context) * c)
-        strict += [c] if positive else []
-        solver.add(c >= 0)
-    solver.add(*(z3.Sum(addends) == 0 for addends in sums.values()), z3.Sum(strict) >= 1)
-    if not strict or solver.check() != z3.sat:
+    solver, sums = z3.SolverFor("QF_LRA", context), dict[int, list[Any]]()
+    unknowns: dict[int, Any] = {i: z3.Real(f"c{i}", context) for i in forms}
+    for i, form in forms.items():
+        for m, k in form.items():
+            sums.setdefault(m, []).append(z3.RealVal(str(k), context) * unknowns[i])
+    solver.add(*(c >= 0 for c in unknowns.values()), *(z3.Sum(addends) == 0 for addends in sums.values()))
+    solver.add(z3.Sum([unknowns[i] for i in strict]) >= 1)
+    if solver.check() != z3.sat:
         return None
-    model = solver.model()
-    values = [model.eval(c, model_completion=True).as_fraction() for c in unknowns]
-    return [SignProduct(Fraction(v), p.facts, p.squares) for v, p in zip(values, products, strict=True) if v]
+    model: Any = solver.model()
+    return {i: Fraction(model.eval(c, model_completion=True).as_fraction()) for i, c in unknowns.items()}

@@ -185,7 +185,7 @@ class ScalarBuilder(Builder):
 
 def _reads(statement: Equation, reading: Reading) -> bool:
     try:
-        value(statement.lhs, reading), value(statement.rhs, reading)
+        _ = value(statement.lhs, reading), value(statement.rhs, reading)
     except Rejected:
         return False
     return True

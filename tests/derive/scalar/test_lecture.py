@@ -6,6 +6,8 @@ import json
 import math
 import random
 from dataclasses import replace
+from fractions import Fraction
+from typing import Any
 
 import pytest
 
@@ -153,7 +155,7 @@ def rejects(walked, name, **changes):
 def test_wrong_formulas_are_rejected(walked):
     t = lecture("scalar").theory.symbols
     A, S, K, C, W, g, P, V = (t[k] for k in ("A", "S", "K", "C", "W", "g", "P", "V"))
-    two = Number(2)
+    two = Number(Fraction(2))
     rejects(walked, "closed loop", statement=Equation(A - K * C, "=", S))  # the wrong root
     rejects(walked, "Riccati equation", statement=Equation(2 * A * P + W + g * Power(P, 2), "=", ZERO))
     rejects(walked, "Riccati equation", statement=Equation(A * P + W - g * Power(P, 2), "=", ZERO))
@@ -161,7 +163,7 @@ def test_wrong_formulas_are_rejected(walked):
     rejects(walked, "no process noise", statement=Equation(P, "=", Quotient(V * Abs(A), Power(C, 2))))
     rejects(walked, "S + A >= 0", statement=Equation(-S - A, "≥", ZERO))
     rejects(walked, "P >= 0", statement=Equation(P, ">", ZERO))
-    rejects(walked, "1/V > 0", statement=Equation(Neg(Quotient(Number(1), V)), ">", ZERO))
+    rejects(walked, "1/V > 0", statement=Equation(Neg(Quotient(Number(Fraction(1)), V)), ">", ZERO))
 
 
 def test_wrong_analysis_is_rejected(walked):
@@ -187,7 +189,7 @@ def test_wrong_analysis_is_rejected(walked):
     other = Log(Quotient(Power(w, 2) + Power(A, 2), Power(w, 2) + Power(S, 2)))
     rejects(walked, "logarithm", statement=Equation(steps["logarithm"][0].statement.lhs, "=", other))
     rejects(walked, "start", statement=Equation(Start(t["P0(t)"], t["t"]), "=", t["P1"]))
-    rejects(walked, "decay", statement=Equation(steps["decay"][0].statement.lhs, "=", Number(1) - S * t["h"]))
+    rejects(walked, "decay", statement=Equation(steps["decay"][0].statement.lhs, "=", Number(Fraction(1)) - S * t["h"]))
 
 
 def test_a_case_is_needed(walked):
@@ -237,7 +239,7 @@ def test_the_hypotheses_of_each_step_can_hold_together(walked):
         for name in (*always, *cases):
             e = item.theory.statement(name)
             poly = value(e.lhs, reading) - value(e.rhs, reading)
-            x = real(poly)
+            x: Any = real(poly)
             waiting |= scalars_of(poly)
             solver.add({"≥": x >= 0, ">": x > 0, "≠": x != 0, "=": x == 0}[e.relation])
         while waiting:
