@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from derive.functions import is_scalar
+from derive.functions import Power, is_scalar, value
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
+from derive.real import Family, Real, scalar, scalars_of
 from derive.rules import Context, Fact, Grid
 from derive.scalars import adopt_atom, adopt_scalar
 from derive.terms import (
@@ -23,6 +24,7 @@ from derive.terms import (
     MissingInverse,
     Product,
     Reading,
+    Sum,
     Symbol,
     Term,
     Transpose,
@@ -47,6 +49,7 @@ class Declared:
     kind: Literal["definition", "hypothesis"]
     text: str = ""
     case: bool = False
+    generic: str = ""  # the variable, if it holds for all but finitely many of its values
 
 
 @dataclass(frozen=True)
@@ -101,6 +104,8 @@ class Theory:
     parameters: set[str] = field(default_factory=set[str])
     nonnegative: set[str] = field(default_factory=set[str])
     complex: set[str] = field(default_factory=set[str])
+    arbitrary: set[str] = field(default_factory=set[str])
+    families: dict[str, Family] = field(default_factory=dict[str, Family])
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
     speaks_of: dict[str, frozenset[str]] = field(default_factory=dict)  # scalars in a declaration
 
@@ -177,6 +182,27 @@ class Theory:
         (self.nonnegative if nonnegative else self.complex).add(name)
         return symbol
 
+    def parameter(self, name: str, glyph: Glyph | None = None, *, meaning: str = "") -> Symbol:
+        """Declare a real parameter that stays arbitrary: no hypothesis may speak of it, and any real may replace it."""
+        self.arbitrary.add(name)
+        return self.scalar(name, glyph, meaning=meaning)
+
+    def roots(self, name: str, index: Symbol, count: Symbol, glyph: Glyph | None = None, *, of: str = "", meaning: str = "") -> Symbol:  # fmt: skip
+        """Declare the roots of a monic polynomial with real coefficients, numbered by an index from 1 to a count."""
+        root = replace(self.scalar(name, glyph, meaning=meaning), show_args=(of,) if of else None)
+        self.symbols[name] = root
+        parts = f"Re {name}", f"Im {name}"
+        for part in parts:
+            self.scalar(part)
+        self.families[name] = Family(*parts, index.name, count.name)
+        return root
+
+    def generic(self, name: str, x: Term, a: Term, variable: Symbol, text: str = "") -> Equation:
+        """Declare x^2 + a^2 > 0, which fails for one value of the variable at most: x is the variable and a shift."""
+        statement = Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero("", ""))
+        self.declared[name] = Declared(name, statement, "hypothesis", text, generic=variable.name)
+        return statement
+
     def direction(self, symbol: Symbol) -> Symbol:
         """Declare the letter along which gradients with respect to a symbol are taken."""
         return self.matrix("δ" + symbol.name, symbol.rows, symbol.cols, parameter=False)
@@ -244,7 +270,9 @@ class Theory:
             complex=frozenset(self.complex),
             facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
         )
-        reading = Reading(context)
+        generic = any(isinstance(d, Declared) and d.generic for d in self.declared.values())
+        real = Real(families=dict(self.families), arbitrary=frozenset(self.arbitrary), generic=generic)
+        reading = Reading(context, real=real)
         for name, images in self.maps.items():
             lowered = {self.symbols[letter].letter: lower(image, reading)[0][0] for letter, image in images.items()}
             for letter in images:
@@ -290,6 +318,7 @@ def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) ->
 def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> Reading:
     """Extend a reading by one declaration of the theory."""
     if isinstance(item, Declared):
+        _check_hypothesis(item, reading)
         reading = adopt(reading, item.name, item.statement)
     elif isinstance(item, DeclaredFact):
         reading = _with_fact(reading, item.name, Fact(item.kind, lower(item.matrix, reading)))
@@ -298,6 +327,20 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
     else:
         reading = adopt_inverse(reading, item)
     return replace(reading, adopted=reading.adopted | {item.name})
+
+
+def _check_hypothesis(item: Declared, reading: Reading) -> None:
+    """Reject a hypothesis on an arbitrary parameter, unless it holds for all but one value of a variable."""
+    names = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
+    match item.statement:
+        case Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero()) if item.generic:
+            shift = value(x, reading) - scalar(item.generic)
+            if any(reading.real.varies(s, item.generic) for p in (shift, value(a, reading)) for s in scalars_of(p)):
+                raise Rejected(f"{item.name}: x must be the variable and a shift, a must not depend on it")
+        case _ if item.generic or (item.kind == "hypothesis" and names & reading.real.arbitrary):
+            raise Rejected(f"{item.name}: nothing may be assumed of an arbitrary parameter")
+        case _:
+            pass
 
 
 def adopt(reading: Reading, name: str, statement: Equation) -> Reading:

@@ -16,6 +16,7 @@ from derive.display import Displayed
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
 from derive.real import NEGATION, Sign
+from derive.roots import check_positive, determinant_claim
 from derive.rules import (
     Comparison,
     Grid,
@@ -47,6 +48,8 @@ from derive.terms import (
 Rule = Literal[
     "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
     "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
+    "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "trace of roots", "determinant", "exchange",
+    "positive", "resolvent",
 ]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 PARTS: Mapping[str, tuple[str, ...]] = {
@@ -54,7 +57,7 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "comparison": ("comparison",),
     "uniqueness": ("uniqueness",),
     "chain": ("links",),
-    **dict.fromkeys(RULES, ("sign", "links")),
+    **dict.fromkeys((*RULES, "positive"), ("sign", "links")),
 }  # the parts of a proof that a rule replays, where they are not the identities
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
@@ -116,6 +119,8 @@ def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificat
     lhs, rhs = statement.lhs, statement.rhs
     if rule in ("scalar", "same rate"):
         return [Certificate(claim) for claim in scalar_claims(statement, rule, reading)]
+    if rule == "determinant":
+        return [Certificate(determinant_claim(statement, reading))]
     if rule == "gradient":
         return [Certificate(_gradient_claim(lhs, rhs, reading), trace=True)]
     if rule == "trace":
@@ -173,6 +178,8 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
         raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
     if step.rule == "chain":
         _check_chain(step, earlier)
+    elif step.rule == "positive":
+        check_positive(step.statement, proof.links, reading)
     elif step.rule in RULES:
         links = [earlier[name].statement for name in proof.links if name in earlier]
         if len(links) != len(proof.links):

@@ -7,10 +7,11 @@ which it does with the reason why it is defined. Standard library only.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
-from derive.kernel import Poly, Rejected
+from derive.kernel import ANY, Poly, Rejected, identity, times
 from derive.real import (
     CIRCLE,
     FREQUENCY,
@@ -19,6 +20,8 @@ from derive.real import (
     ORIGIN,
     SIGNS,
     ZERO,
+    Atom,
+    Family,
     Real,
     at_origin,
     constant,
@@ -29,7 +32,33 @@ from derive.real import (
     reflect,
     scalar,
 )
-from derive.terms import Equation, MissingInverse, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero, walk
+from derive.spectral import (
+    At,
+    Det,
+    Entry,
+    ImaginaryPart,
+    Modulus,
+    RealPart,
+    Roots,
+    TimesArctan,
+    TimesLog,
+    Total,
+)
+from derive.terms import (
+    Equation,
+    MissingInverse,
+    Neg,
+    Number,
+    Product,
+    Reading,
+    Sum,
+    Symbol,
+    Term,
+    Trace,
+    Zero,
+    lower,
+    walk,
+)
 
 PI = Symbol(CIRCLE, scalar=True)
 
@@ -132,12 +161,23 @@ class Definite(Term):
     upper: Term
 
 
+OF_MATRIX = (Det, Trace, Entry)  # numbers that a matrix has
+
+
 def is_scalar(statement: Equation) -> bool:
-    """Tell whether a statement is about real scalars only."""
-    nodes = [n for side in (statement.lhs, statement.rhs) for n in walk(side) if not list(n.children())]
-    real = [n for n in nodes if isinstance(n, Symbol) and n.scalar]
+    """Tell whether a statement is about scalars only; the determinant and the trace of a matrix are."""
+    nodes = [n for side in (statement.lhs, statement.rhs) for n in _leaves(side)]
+    real = [n for n in nodes if isinstance(n, OF_MATRIX) or (isinstance(n, Symbol) and n.scalar)]
     plain = all(n in real or isinstance(n, (Number, Infinity)) or n == Zero("", "") for n in nodes)
     return plain and (bool(real) or statement.relation in SIGNS)
+
+
+def _leaves(term: Term) -> Iterator[Term]:
+    children = [] if isinstance(term, OF_MATRIX) else list(term.children())
+    if not children:
+        yield term
+    for child in children:
+        yield from _leaves(child)
 
 
 def value(term: Term, reading: Reading) -> Poly:
@@ -170,6 +210,8 @@ def value(term: Term, reading: Reading) -> Poly:
             return power(value(body, reading), exponent)
         case Quotient(top, bottom):
             return value(top, reading) * _over(bottom, reading)
+        case Log(Modulus() | At()):
+            return _spectral(term, reading)
         case Log(Quotient(top, bottom)):
             return value(Log(top), reading) - value(Log(bottom), reading)
         case Root(body) | Abs(body) | Max(body) | Exp(body) | Log(body) | Arctan(body):
@@ -183,7 +225,7 @@ def value(term: Term, reading: Reading) -> Poly:
         case Definite():
             return _integral(term, reading)
         case _:
-            raise Rejected(f"{type(term).__name__} has no meaning as a scalar")
+            return _spectral(term, reading)
 
 
 KINDS = {Root: "root", Abs: "absolute", Max: "part", Exp: "exp", Log: "log", Arctan: "arctan"}
@@ -196,6 +238,140 @@ def _atom(term: Term, of: Poly, real: Real) -> str:
     return name
 
 
+# ------------------------------------------------------------------------------------------------ frequency domain
+COMPLEX, AXIS = "s", ("j", FREQUENCY)  # a generic complex number, and the factors of a point on the imaginary axis
+
+
+def _spectral(term: Term, reading: Reading) -> Poly:
+    """Read a term of the frequency domain: a family of roots, a determinant or trace, a logarithm on the axis."""
+    match term:
+        case RealPart(root):
+            return scalar(_family(root, reading).real)
+        case ImaginaryPart(root):
+            return scalar(_family(root, reading).imaginary)
+        case Total(body, index, count):
+            return total(value(body, reading), index.name, count.name, reading.real)
+        case Det() | Roots() | TimesLog() | TimesArctan() | Log():
+            atom = spectral_atom("", term, reading)
+            if atom.kind == "det" and atom.of == identity(atom.of.rows):
+                return ONE
+            name = _find(atom, reading)
+            if name is None:
+                raise MissingInverse(f"{atom.kind}: not declared, or its reason is not proved yet")
+            return scalar(name)
+        case Trace(body):
+            return _trace(body, reading)
+        case Entry(body):
+            return _entry(body, reading)
+        case _:
+            raise Rejected(f"{type(term).__name__} has no meaning as a scalar")
+
+
+def spectral_atom(name: str, term: Term, reading: Reading) -> Atom:
+    """Return the atom that a determinant, trace, product over roots, sum or logarithm stands for."""
+    match term:
+        case Det(body):
+            return Atom(name, "det", _square(body, reading))
+        case Trace(body):
+            return Atom(name, "trace", _square(body, reading))
+        case Roots(point, root, index, count):
+            family = _family(root, reading)
+            if (family.index, family.count) != (index.name, count.name):
+                raise Rejected(f"the roots {root.name} are numbered otherwise")
+            if point not in (Symbol(COMPLEX, scalar=True), Neg(Symbol(COMPLEX, scalar=True))):
+                raise Rejected("a product over roots is read at s or -s")
+            return Atom(name, "roots", value(point, reading), over=root.name)
+        case Total(body, index, _):
+            poly = value(body, reading)
+            if list(poly.terms.values()) != [1]:
+                raise Rejected("a sum is declared of one product")
+            return Atom(name, "sum", poly, over=index.name)
+        case TimesLog(factor, width):
+            return Atom(name, "times log", value(factor, reading), value(width, reading))
+        case TimesArctan(factor, width):
+            return Atom(name, "times arctan", value(factor, reading), value(width, reading))
+        case Log(Modulus(At(body, symbol, point))):
+            return Atom(name, "log modulus", value(body, reading), over=_variable(symbol, point))
+        case Log(At(body, symbol, point)):
+            return Atom(name, "log value", value(body, reading), over=_variable(symbol, point))
+        case _:
+            raise Rejected(f"{type(term).__name__} stands for no atom")
+
+
+def _variable(symbol: Symbol, point: Term) -> str:
+    """Return the real variable of a point: ω on the imaginary axis, s itself along the reals."""
+    if symbol.name != COMPLEX:
+        raise Rejected("a function is taken at a point of its variable s")
+    match point:
+        case Symbol(name=name) if name == COMPLEX:
+            return COMPLEX
+        case Product((Symbol() as j, Symbol() as w)) if (j.name, w.name) == AXIS:
+            return FREQUENCY
+        case _:
+            raise Rejected("a function is taken on the imaginary axis, or along the reals")
+
+
+def _family(root: Symbol, reading: Reading) -> Family:
+    family = reading.real.families.get(root.name)
+    if family is None:
+        raise Rejected(f"{root.name} is no family of roots")
+    return family
+
+
+def _square(body: Term, reading: Reading) -> Poly:
+    grid = lower(body, reading)
+    if len(grid) != 1 or len(grid[0]) != 1 or grid[0][0].rows != grid[0][0].cols:
+        raise Rejected("a determinant or trace is that of one square matrix")
+    return grid[0][0]
+
+
+def _find(atom: Atom, reading: Reading) -> str | None:
+    found = reading.real.find(atom.kind, atom.of, atom.by, atom.over)
+    if found is None and atom.kind == "det":
+        return reading.real.find("det", reading.context.alphabet.transpose(atom.of))
+    return found
+
+
+def _trace(body: Term, reading: Reading) -> Poly:
+    """Read a trace as a sum of the traces of products, each of which is declared."""
+    poly, alphabet, result = _square(body, reading), reading.context.alphabet, ZERO
+    known = {tuple(alphabet.cyclic(a.of).items()): a.name for a in reading.real.atoms.values() if a.kind == "trace"}
+    for (m, w), c in poly.terms.items():
+        name = known.get(tuple(alphabet.cyclic(Poly({((), w): 1}, poly.rows, poly.cols)).items()))
+        if name is None:
+            raise MissingInverse("a trace that is not declared")
+        result = result + Poly({(times(m, (name,)), ()): c}, ANY, ANY)
+    return result
+
+
+def _entry(body: Term, reading: Reading) -> Poly:
+    """Read the entry of a matrix with one row and one column, which is its determinant and its trace."""
+    size = _square(body, reading).rows
+    if not any(f.kind == "single" and f.matrix[0][0].rows == size for f in reading.context.facts.values()):
+        raise MissingInverse(f"the dimension {size} is not known to be 1")
+    try:
+        return _spectral(Det(body), reading)
+    except MissingInverse:
+        return _trace(body, reading)
+
+
+def total(poly: Poly, index: str, count: str, real: Real) -> Poly:
+    """Return the sum over an index: of each product the part that carries the index, which is declared as a sum."""
+    counts = {(f.index, f.count) for f in real.families.values()}
+    if (index, count) not in counts:
+        raise Rejected(f"{index} is not the index of a family with {count} members")
+    result = ZERO
+    for (m, _), c in poly.terms.items():
+        moving = tuple(s for s in m if real.varies(s, index))
+        fixed = Poly({(tuple(s for s in m if s not in moving), ()): c}, ANY, ANY)
+        name = real.find("sum", Poly({(moving, ()): 1}, ANY, ANY), None, index) if moving else count
+        if name is None:
+            raise MissingInverse(f"the sum of {' '.join(moving)} is not declared")
+        result = result + fixed * scalar(name)
+    return result
+
+
+# ------------------------------------------------------------------------------------------------ quotients, integrals
 def _over(term: Term, reading: Reading) -> Poly:
     try:
         return over(term, reading)

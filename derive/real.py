@@ -21,6 +21,9 @@ NEGATION = "¬"  # the fact (for ≠: the relation) that the claim is false
 ORIGIN, INFINITY = "0", "∞"
 FREQUENCY = "ω"  # the variable of improper integrals
 CIRCLE = "π"  # the scalar that stands for the circle's number
+MATRIX = ("det", "trace")  # atoms of a matrix polynomial
+EVERYWHERE = ("defined", "root", "reciprocal", "absolute", "part", "exp", "log", "arctan", "sum")  # functions of ``of``
+LOGARITHMS = ("log modulus", "log value")  # atoms of a complex function of a real variable
 
 
 @dataclass(frozen=True)
@@ -29,11 +32,26 @@ class Atom:
 
     root: r >= 0, r^2 = of. reciprocal: r of = 1. absolute: r >= 0, r^2 = of^2. part: r = max(0, of). exp, log, arctan.
     integral: of ``of`` over t from 0 to t. improper: of ``of`` over ω from 0 to infinity. defined: r = of.
+    times log: x ln(x^2 + a^2), times arctan: |a| arctan(x/|a|), with x = of, a = by. sum: of ``of`` over the index.
+    roots: the product of (of - root) over a family. log modulus, log value: ln |f| and ln f on the axis, or along the
+    reals. det, trace: of a matrix.
     """
 
     name: str
     kind: str
     of: Poly
+    by: Poly | None = None
+    over: str = ""  # the index of a sum, the family of a product over roots, the variable of a log modulus
+
+
+@dataclass(frozen=True)
+class Family:
+    """The roots of a monic polynomial with real coefficients: the scalars of their real and imaginary parts."""
+
+    real: str
+    imaginary: str
+    index: str
+    count: str
 
 
 @dataclass(frozen=True)
@@ -42,13 +60,23 @@ class Real:
 
     atoms: Mapping[str, Atom] = field(default_factory=dict[str, Atom])
     limits: Mapping[tuple[str, str, Scalars], Poly] = field(default_factory=dict[tuple[str, str, Scalars], Poly])
+    sums: tuple[tuple[str, str, Poly, Poly], ...] = ()  # proved limits of sums: variable, point, sum, limit
+    families: Mapping[str, Family] = field(default_factory=dict[str, Family])
+    arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
+    generic: bool = False  # whether some facts hold only for all but finitely many values of a variable
 
-    def find(self, kind: str, of: Poly) -> str | None:
+    def find(self, kind: str, of: Poly, by: Poly | None = None, over: str = "") -> str | None:
         """Return the name of an atom; definitions in its argument may be written out or not."""
-        same = [a for a in self.atoms.values() if a.kind == kind]
+        same = [a for a in self.atoms.values() if (a.kind, a.by, a.over) == (kind, by, over)]
         exact = next((a.name for a in same if a.of == of), None)
+        if exact or kind in MATRIX:
+            return exact
         wanted = self.unfold(of)
-        return exact or next((a.name for a in same if self.unfold(a.of) == wanted), None)
+        return next((a.name for a in same if self.unfold(a.of) == wanted), None)
+
+    def indexed(self, name: str) -> str:
+        """Return the index that a scalar carries, or nothing."""
+        return next((f.index for f in self.families.values() if name in (f.real, f.imaginary)), "")
 
     def unfold(self, poly: Poly) -> Poly:
         """Write out the definitions in a polynomial."""
@@ -63,12 +91,17 @@ class Real:
 
     def varies(self, name: str, variable: str) -> bool:
         """Tell whether a scalar depends on a variable."""
-        if name == variable:
+        if name == variable or (variable and self.indexed(name) == variable):
             return True
         atom = self.atoms.get(name)
-        if atom is not None and atom.kind == "improper" and variable == FREQUENCY:
+        if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False
-        return atom is not None and any(self.varies(s, variable) for s in scalars_of(atom.of))
+        if atom.kind in LOGARITHMS:
+            return atom.over == variable
+        if atom.kind in MATRIX or (atom.kind == "sum" and atom.over == variable):
+            return False
+        below = scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
+        return any(self.varies(s, variable) for s in below)
 
 
 def constant(value: Fraction | int) -> Poly:
@@ -103,8 +136,8 @@ def power(poly: Poly, exponent: int) -> Poly:
 
 
 # ------------------------------------------------------------------------------------------------ atoms
-def atom_relation(atom: Atom) -> Poly | None:
-    """Return the polynomial that the atom makes zero, if there is one."""
+def atom_relation(atom: Atom, real: Real | None = None) -> Poly | None:
+    """Return the polynomial that the atom makes zero, if there is one; x ln u has it where ln u is declared."""
     r = scalar(atom.name)
     match atom.kind:
         case "root":
@@ -117,6 +150,9 @@ def atom_relation(atom: Atom) -> Poly | None:
             return r * (r - atom.of)
         case "defined":
             return r - atom.of
+        case "times log" if atom.by is not None and real is not None:
+            log = real.find("log", atom.of * atom.of + atom.by * atom.by)
+            return r - atom.of * scalar(log) if log else None
         case _:
             return None
 
@@ -131,6 +167,8 @@ def atom_facts(atom: Atom) -> dict[str, Fact]:
         found[f"{name} ≥ its argument"] = "nonnegative", r - atom.of
     if atom.kind == "exp":
         found[f"{name} > 0"] = "positive", r
+    if atom.kind == "roots":
+        found[f"{name} ≠ 0"] = "nonzero", r
     return {key: Fact(kind, ((poly,),)) for key, (kind, poly) in found.items()}
 
 
@@ -231,8 +269,19 @@ def rate(name: str, variable: str, real: Real) -> Poly:
             return inner * reciprocal(ONE + atom.of * atom.of, real)
         case "integral" if variable == "t":
             return atom.of
+        case "times log" | "times arctan" if atom.by is not None and not _moves(atom.by, variable, real):
+            square, width = atom.of * atom.of, atom.by * atom.by
+            over = reciprocal(square + width, real)
+            log = real.find("log", square + width) if atom.kind == "times log" else None
+            if log is None and atom.kind == "times log":
+                raise Rejected(f"the logarithm in {name} is not declared")
+            return inner * (scalar(log) + square.scale(2) * over if log else width * over)
         case _:
             raise Rejected(f"no rule for the derivative of {name}, a {atom.kind}")
+
+
+def _moves(poly: Poly, variable: str, real: Real) -> bool:
+    return any(real.varies(s, variable) for s in scalars_of(poly))
 
 
 def at_origin(poly: Poly, variable: str, real: Real) -> Poly:
@@ -264,6 +313,8 @@ def _atom_at_origin(name: str, variable: str, real: Real) -> Poly:
             return inner
         case "reciprocal":
             return reciprocal(inner, real)
+        case "times log" | "times arctan" if atom.by is not None and not _moves(atom.by, variable, real):
+            return _odd(atom, inner, real)
         case "exp" | "arctan" | "root" if inner == ZERO:
             return ONE if atom.kind == "exp" else ZERO
         case "exp" | "arctan" | "log" if real.find(atom.kind, inner):
@@ -272,16 +323,31 @@ def _atom_at_origin(name: str, variable: str, real: Real) -> Poly:
             raise Rejected(f"no value of {name} at 0")
 
 
+def _odd(atom: Atom, inner: Poly, real: Real) -> Poly:
+    """Return the value of a function that is odd in its argument, at a point that is declared or minus one."""
+    if inner == ZERO:
+        return ZERO
+    name, turned = real.find(atom.kind, inner, atom.by), real.find(atom.kind, -inner, atom.by)
+    if name is None and turned is None:
+        raise Rejected(f"no value of {atom.name} at 0")
+    return scalar(name) if name else -scalar(turned or "")
+
+
 def reflect(poly: Poly, variable: str, real: Real) -> Poly:
-    """Return the polynomial at minus the variable; atoms must be even in it."""
+    """Return the polynomial at minus the variable, which atoms may take into others of their kind."""
 
     def image(name: str) -> Poly:
         if name == variable:
             return -scalar(name)
         atom = real.atoms.get(name)
-        if atom is None or atom.kind in ("integral", "improper") or reflect(atom.of, variable, real) != atom.of:
+        if atom is not None and atom.kind in LOGARITHMS and variable == FREQUENCY == atom.over:
+            return scalar(name)  # |f(-jω)| = |f(jω)|, the coefficients of f are real
+        if atom is None or atom.kind not in EVERYWHERE:
             raise Rejected(f"{name} is not even in {variable}")
-        return scalar(name)
+        found = real.find(atom.kind, reflect(atom.of, variable, real), atom.by, atom.over)
+        if found is None:
+            raise Rejected(f"{name} is not even in {variable}")
+        return scalar(found)
 
     return _substitute(poly, variable, real, image)
 
@@ -289,11 +355,27 @@ def reflect(poly: Poly, variable: str, real: Real) -> Poly:
 def limit(poly: Poly, variable: str, point: str, real: Real, context: Context) -> Poly:
     """Return the limit as the variable, positive, tends to 0 or to infinity: of sums, products and known functions."""
     total = ZERO
+    for known in (k for k in real.sums if k[:2] == (variable, point)):
+        poly, reached = _less(poly, known[2], known[3], variable, real)
+        total = total + reached
     for (m, _), c in poly.terms.items():
         moving = tuple(s for s in m if real.varies(s, variable))
         fixed = Poly({(tuple(s for s in m if s not in moving), ()): c}, ANY, ANY)
         total = total + fixed * _limit_of_product(moving, variable, point, real, context)
     return total
+
+
+def _less(poly: Poly, known: Poly, value: Poly, variable: str, real: Real) -> tuple[Poly, Poly]:
+    """Subtract the multiple of a sum whose limit is known that removes its first product; return its limit as well."""
+    ((first, _), coefficient) = next(iter(known.terms.items()))
+    if not first or not all(real.varies(s, variable) for s in first):
+        return poly, ZERO
+    factor = ZERO
+    for (m, _), c in poly.terms.items():
+        moving = tuple(s for s in m if real.varies(s, variable))
+        if moving == first:
+            factor = factor + Poly({(tuple(s for s in m if s not in moving), ()): c / coefficient}, ANY, ANY)
+    return poly - factor * known, factor * value
 
 
 def _limit_of_product(m: Scalars, variable: str, point: str, real: Real, context: Context) -> Poly:
@@ -308,10 +390,38 @@ def _limit_of_product(m: Scalars, variable: str, point: str, real: Real, context
         if s in real.atoms and real.atoms[s].kind == "defined":
             rest = Poly({((*m[:i], *m[i + 1 :]), ()): 1}, ANY, ANY)
             return limit(rest * real.atoms[s].of, variable, point, real, context)
+    proper = _limit_of_rational(m, variable, real) if point == INFINITY else None
+    if proper is not None:
+        return proper
     total = ONE
     for s in m:
         total = total * _limit_of_scalar(s, variable, point, real, context)
     return total
+
+
+def _limit_of_rational(m: Scalars, variable: str, real: Real) -> Poly | None:
+    """Return the limit of x^k times reciprocals of polynomials in x with a number before the highest power, k <= it."""
+    degree, leading = 0, Fraction(1)
+    for s in m:
+        atom = real.atoms.get(s)
+        if s == variable:
+            degree += 1
+        elif atom is not None and atom.kind == "reciprocal":
+            powers = [(n.count(variable), n, c) for (n, _), c in atom.of.terms.items()]
+            highest = max(k for k, _, _ in powers)
+            top = [(n, c) for k, n, c in powers if k == highest]
+            if len(top) != 1 or set(top[0][0]) != {variable} or _moves_besides(atom.of, variable, real):
+                return None
+            degree, leading = degree - highest, leading * top[0][1]
+        else:
+            return None
+    if degree > 0:
+        raise Rejected(f"{' '.join(m)} tends to infinity")
+    return constant(1 / leading) if degree == 0 else ZERO
+
+
+def _moves_besides(poly: Poly, variable: str, real: Real) -> bool:
+    return any(s != variable and real.varies(s, variable) for s in scalars_of(poly))
 
 
 def _limit_of_scalar(name: str, variable: str, point: str, real: Real, context: Context) -> Poly:
@@ -330,12 +440,22 @@ def _limit_of_scalar(name: str, variable: str, point: str, real: Real, context: 
             return ZERO
         case "exp" if slope is not None and _positive(-slope, context):
             return ZERO
+        case "times arctan" if atom is not None and _is_shift(atom.of, variable, real):
+            width = real.find("absolute", atom.by or ZERO)
+            if width is None:
+                raise Rejected(f"the modulus in {name} is not declared")
+            return scalar(CIRCLE).scale(Fraction(1, 2)) * scalar(width)
         case "arctan" if slope is not None and _positive(slope, context):
             return scalar(CIRCLE).scale(Fraction(1, 2))
         case "reciprocal" if atom is not None:
             return reciprocal(limit(atom.of, variable, point, real, context), real)
         case _:
             raise Rejected(f"the limit of {name} is not known")
+
+
+def _is_shift(poly: Poly, variable: str, real: Real) -> bool:
+    """Tell whether a polynomial is the variable plus what does not depend on it."""
+    return not _moves(poly - scalar(variable), variable, real)
 
 
 def _slope(poly: Poly, variable: str) -> Poly | None:

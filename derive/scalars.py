@@ -2,7 +2,7 @@
 
 scalar: the difference of both sides is zero, an identity. same rate: both sides have the same derivative in t and the
 same value at 0. sign: >=, > or ≠ by a certificate of sign. both: a = b from a >= b and b >= a. squeeze: the limit of f
-is v, because f - v and v - f are at most b and the limit of b is zero. integral: from an antiderivative and its limits.
+is v, because f - v and v - f are at most b and c, whose limits are zero. integral: from an antiderivative and its limits.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from derive.functions import Definite, Infinity, Limit, Log, Rate, point_of, value
+from derive.functions import Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value
 from derive.kernel import Poly, Rejected
 from derive.real import (
+    LOGARITHMS,
     SIGNS,
     ZERO,
     Atom,
@@ -27,10 +28,11 @@ from derive.real import (
     scalar,
     scalars_of,
 )
+from derive.roots import CHECKS, real_coefficients
 from derive.rules import Fact
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term
 
-RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument"})
+RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument", *CHECKS})
 TIME = "t"
 
 
@@ -51,6 +53,9 @@ def adopt_scalar(reading: Reading, name: str, statement: Equation) -> Reading:
                 key = (symbol.name, point_of(point), m)
                 if key not in real.limits:
                     real = replace(real, limits={**real.limits, key: value(rhs, reading).scale(1 / c)})
+            elif limited.terms:
+                known = symbol.name, point_of(point), limited, value(rhs, reading)
+                real = replace(real, sums=(*real.sums, known))
             return replace(reading, real=real)
         case Symbol() if statement.relation == ":=":
             atom = Atom(lhs.name, "defined", value(rhs, reading))
@@ -70,9 +75,12 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
         Rejected: the reason is about something else.
     """
     try:
-        atom = Atom(name, kind, value(of, reading))
+        atom = spectral_atom(name, of, reading) if kind == "spectral" else Atom(name, kind, value(of, reading))
     except Rejected as error:
         raise MissingInverse(str(error)) from None
+    kind = atom.kind
+    if kind in LOGARITHMS and not real_coefficients(atom.of, reading):
+        raise Rejected(f"{name}: the coefficients of the function are not known to be real")
     context, wanted = reading.context, needs(kind)
     if wanted or because:
         fact = context.facts.get(because)
@@ -83,7 +91,7 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
         if not negative and (fact.matrix != ((atom.of,),) or fact.kind not in (wanted or ("positive",))):
             raise Rejected(f"{because} is not a reason why {name} exists")
     _check_order(atom, reading)
-    relation, facts = atom_relation(atom), atom_facts(atom)
+    relation, facts = atom_relation(atom, reading.real), atom_facts(atom)
     if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
         facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
     real = replace(reading.real, atoms={**reading.real.atoms, name: atom})
@@ -119,10 +127,11 @@ def check_scalar(
         claim = value(statement.lhs, reading) - value(statement.rhs, reading)
         replay_sign(sign, claim, statement.relation, reading.context)
         return
-    if statement.relation != "=":
+    if statement.relation != "=" and rule not in ("instance", "sum over"):
         raise Rejected(f"the rule {rule!r} proves equations, not {statement.relation}")
     checks = {
-        "both": _check_both, "squeeze": _check_squeeze, "integral": _check_integral, "same argument": _check_argument
+        "both": _check_both, "squeeze": _check_squeeze, "integral": _check_integral, "same argument": _check_argument,
+        **CHECKS,
     }  # fmt: skip
     checks[rule](statement, links, reading)
 
@@ -135,8 +144,17 @@ def _check_both(statement: Equation, links: Sequence[Equation], reading: Reading
 
 
 def _check_argument(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
-    """Accept f(u) = f(v) from u = v: for a logarithm, or an integral over 0 to infinity."""
+    """Accept f(u) = f(v) from u = v: for a logarithm, a limit, or an integral over 0 to infinity.
+
+    A limit at infinity takes no more than equality near it, so equality but for finitely many points is enough.
+    """
     match statement, links:
+        case (
+            Equation(Limit(f, x, Infinity()), "=", v), [Equation(a, "=", b)]
+        ) if f == a:
+            value(f, reading), value(b, reading)
+            if value(Limit(b, x, Infinity()), reading) != value(v, reading) or _moves(v, x, reading):
+                raise Rejected("the limit of the equal function is another")
         case Equation(Log(u), "=", Log(v)), [Equation(a, "=", b)] if (u, v) == (a, b):
             value(statement.lhs, reading), value(statement.rhs, reading)
         case (
@@ -149,14 +167,16 @@ def _check_argument(statement: Equation, links: Sequence[Equation], reading: Rea
 
 
 def _check_squeeze(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
-    """Accept lim f = v from b >= f - v and b >= v - f, where lim b = 0."""
+    """Accept lim f = v from b >= f - v and c >= v - f, where b and c tend to 0."""
     match statement.lhs, links:
-        case Limit(body, symbol, point), [Equation(b, "≥", above), Equation(c, "≥", below)] if b == c:
+        case Limit(body, symbol, point), [Equation(b, "≥", above), Equation(c, "≥", below)]:
             gap = value(body, reading) - value(statement.rhs, reading)
             if (value(above, reading), value(below, reading)) != (gap, -gap):
                 raise Rejected("the bounds are on something else")
-            if value(Limit(b, symbol, point), reading) != ZERO or _moves(statement.rhs, symbol, reading):
-                raise Rejected("the bound does not tend to zero")
+            if _moves(statement.rhs, symbol, reading):
+                raise Rejected("the limit depends on the variable")
+            if any(value(Limit(bound, symbol, point), reading) != ZERO for bound in (b, c)):
+                raise Rejected("a bound does not tend to zero")
         case _:
             raise Rejected("a squeeze needs a limit and two bounds")
 
@@ -181,5 +201,16 @@ def _check_integral(statement: Equation, links: Sequence[Equation], reading: Rea
                 raise Rejected("the limits are at other ends than the integral")
             if value(statement.rhs, reading) != value(above, reading) - value(below, reading):
                 raise Rejected("the value is not the difference of the limits")
+            if reading.real.generic and not _continuous(value(G, reading), x.name, reading):
+                raise Rejected("the antiderivative is not known to be continuous")
         case _:
             raise Rejected("an integral needs an antiderivative of its integrand, and its limits at both ends")
+
+
+CONTINUOUS = ("times log", "times arctan")
+
+
+def _continuous(poly: Poly, variable: str, reading: Reading) -> bool:
+    """Tell whether a polynomial in the variable and functions continuous in it, whose derivative may have gaps."""
+    moving = {s for s in scalars_of(poly) if s != variable and reading.real.varies(s, variable)}
+    return all(s in reading.real.atoms and reading.real.atoms[s].kind in CONTINUOUS for s in moving)

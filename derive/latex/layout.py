@@ -8,11 +8,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
 from derive.functions import Abs, Arctan, Definite, Exp, Infinity, Limit, Log, Max, Power, Quotient, Rate, Root, Start
 from derive.latex.alphabet import GREEK
+from derive.presentation import Named
+from derive.spectral import (
+    At,
+    Det,
+    Entry,
+    ImaginaryPart,
+    Modulus,
+    RealPart,
+    Roots,
+    TimesArctan,
+    TimesLog,
+    Total,
+)
 from derive.terms import (
     Block,
     Delta,
@@ -205,12 +218,20 @@ def level(term: Term) -> int:
     match term:
         case Product((only,)):
             return level(only)
+        case Named(shows=shows):
+            return level(shows)
         case Product():
             return PRODUCT
         case Dot(Symbol() as symbol):
             return level(symbol)
         case Dot() | Integral() | Gradient() | Definite() | Rate() | Limit() | Log() | Arctan():
             return OPEN
+        case Det() | Total() | Roots() | RealPart() | ImaginaryPart():
+            return OPEN
+        case TimesLog() | TimesArctan():
+            return PRODUCT
+        case At() | Entry():
+            return level(_placed(term) if isinstance(term, At) else term.body)
         case Quotient():
             return PRODUCT
         case Number(value):
@@ -248,6 +269,8 @@ def layout(term: Term | Equation) -> Box:
     match term:
         case Equation(lhs, relation, rhs):
             return row((layout(lhs), Op(relation), layout(rhs)))
+        case Named(shows=shows):
+            return layout(shows)
         case Symbol():
             return _symbol(term)
         case Identity():
@@ -279,6 +302,12 @@ def layout(term: Term | Equation) -> Box:
             return Letter("∞")
         case Abs() | Max() | Exp() | Log() | Arctan() | Rate() | Start() | Limit() | Definite():
             return _function(term)
+        case Det() | Roots() | Total() | RealPart() | ImaginaryPart() | Modulus() | TimesLog() | TimesArctan():
+            return _spectral(term)
+        case Entry(body):
+            return layout(body)
+        case At():
+            return layout(_placed(term))
         case _:
             return _operator(term)
 
@@ -400,6 +429,49 @@ def _function(term: Term) -> Box:
             return row((sign, at_least(body, OPEN), differential))
         case _:
             raise TypeError(f"no layout for {type(term).__name__}")
+
+
+def _spectral(term: Term) -> Box:
+    """Lay out a term of the frequency domain."""
+    match term:
+        case Det(body):
+            name, simple = Letter("det", upright=True), isinstance(body, (Symbol, At))
+            return row((name, Op(APPLY, "tight"), layout(body) if simple else Fenced(layout(body), "[", "]")))
+        case RealPart(root) | ImaginaryPart(root):
+            name = Letter("Re" if isinstance(term, RealPart) else "Im", upright=True)
+            return row((name, Op(APPLY, "tight"), layout(root)))
+        case Modulus(body):
+            return Fenced(layout(body), "|", "|")
+        case Total(body, index, count) | Roots(body, _, index, count):
+            large = Op("∑" if isinstance(term, Total) else "∏", "prefix")
+            start = row((layout(index), Op("=", "tight"), Digits("1")))
+            difference = Fenced(row((layout(body), Op("−"), layout(term.root)))) if isinstance(term, Roots) else None
+            return row((Scripted(large, start, layout(count)), difference or at_least(body, OPEN)))
+        case TimesLog(x, a):
+            return layout(Product((x, Log(Sum((Power(x, 2), Power(a, 2)))))))
+        case TimesArctan(x, a):
+            return layout(Product((Abs(a), Arctan(Quotient(x, Abs(a))))))
+        case _:
+            raise TypeError(f"no layout for {type(term).__name__}")
+
+
+def _placed(term: At) -> Term:
+    """Write a function at a point: the point for its variable, ω for jω in the argument of a symbol."""
+    name = term.point.name if isinstance(term.point, Symbol) else "ω"
+
+    def within(part: object) -> object:
+        if part == term.symbol:
+            return term.point
+        if isinstance(part, Symbol):
+            shown = part.show_args and tuple(name if a == term.symbol.name else a for a in part.show_args)
+            return replace(part, show_args=shown)
+        if isinstance(part, Term):
+            return replace(part, **{f.name: within(getattr(part, f.name)) for f in fields(part)})  # type: ignore[type-var]
+        return tuple(map(within, part)) if isinstance(part, tuple) else part
+
+    placed = within(term.body)
+    assert isinstance(placed, Term)
+    return placed
 
 
 def _operator(term: Term) -> Box:

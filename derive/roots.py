@@ -1,0 +1,388 @@
+"""Rules for determinants, traces and roots of polynomials: how matrices become functions of a frequency.
+
+Each rule takes a statement and the steps it is linked to, and accepts or raises Rejected. They search nothing.
+
+instance: a step about arbitrary parameters, with others in their place. sum over: a step that holds for every index,
+summed. conjugate: the roots of a real polynomial may be replaced by their conjugates. same roots: equal products over
+roots have equal sums over roots. linear: the sum or difference of two improper integrals. modulus: ln |f| where f is a
+quotient of products over roots. roots' trace: tr M is the sum of the real parts of the eigenvalues. exchange:
+det(I + XY) = det(I + YX). det > 0 of a positive definite matrix. trace sign: tr(MP) >= 0 for M, P >= 0. resolvent:
+tr(X (sI - M)^-1 Y) tends to 0. Standard library only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields, replace
+from fractions import Fraction
+
+from derive.functions import COMPLEX, Definite, Infinity, Limit, Log, Quotient, point_of, total, value
+from derive.kernel import Poly, Rejected, identity, parts
+from derive.real import FREQUENCY, LOGARITHMS, ZERO, reflect, scalar, scalars_of
+from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
+from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, lower, walk
+
+Links = Sequence[Equation]
+HALF = Fraction(1, 2)
+
+
+# ------------------------------------------------------------------------------------------------ substitution
+def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept a step with terms in the place of parameters of which the theory assumes nothing."""
+    (lemma,) = _exactly(1, links)
+    images: dict[Symbol, Term] = {}
+    _match(lemma, statement, images, reading)
+    if _put(lemma, images) != statement or not images:
+        raise Rejected("the statement is no instance of the step")
+    names = {s.name for s in images}
+    bound = {n.symbol.name for side in _sides(lemma) for n in walk(side) if isinstance(n, (Limit, Definite))}
+    for symbol in (n for side in _sides(lemma) for n in walk(side) if isinstance(n, Symbol)):
+        if symbol.name not in names and any(reading.real.varies(symbol.name, p) for p in names):
+            raise Rejected(f"{symbol.name} stands for something that depends on a parameter")
+    for image in images.values():
+        if any(reading.real.varies(s, v) for s in scalars_of(value(image, reading)) for v in bound):
+            raise Rejected("the image of a parameter depends on the variable of a limit or integral")
+    _readable(statement, reading)
+
+
+def _match(pattern: Term | Equation, found: Term | Equation, images: dict[Symbol, Term], reading: Reading) -> None:
+    if isinstance(pattern, Symbol) and pattern.name in reading.real.arbitrary and isinstance(found, Term):
+        images.setdefault(pattern, found)
+        return
+    if type(pattern) is not type(found):
+        return
+    for f in fields(pattern):
+        for one, two in zip(*(_terms(getattr(t, f.name)) for t in (pattern, found)), strict=False):
+            _match(one, two, images, reading)
+
+
+def _terms(item: object) -> list[Term]:
+    return [item] if isinstance(item, Term) else [t for t in item if isinstance(t, Term)] if isinstance(item, tuple) else []  # fmt: skip
+
+
+def _put(item: object, images: Mapping[Symbol, Term]) -> object:
+    """Replace symbols in a term or statement."""
+    if isinstance(item, Symbol):
+        return images.get(item, item)
+    if isinstance(item, tuple):
+        return tuple(_put(part, images) for part in item)
+    if isinstance(item, (Term, Equation)):
+        return replace(item, **{f.name: _put(getattr(item, f.name), images) for f in fields(item)})  # type: ignore[type-var]
+    return item
+
+
+def check_sum(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept the sum over an index of a step: of both sides, of a limit, or of an improper integral."""
+    (lemma,) = _exactly(1, links)
+    if not isinstance(statement.rhs, Total):
+        raise Rejected("the right-hand side is not a sum")
+    index, count = statement.rhs.index, statement.rhs.count
+    over: Callable[[Term], Term] = lambda body: Total(body, index, count)  # noqa: E731
+    match lemma:
+        case Equation(Limit(body, x, point), "=", limit):
+            wanted = Equation(Limit(over(body), x, point), "=", over(limit))
+        case Equation(Definite(body, x, lower, Infinity() as upper), "=", integral) if point_of(lower) == "0":
+            wanted = Equation(Definite(over(body), x, lower, upper), "=", over(integral))
+        case Equation(lhs, "=" | "≥" as relation, rhs):
+            wanted = Equation(over(lhs), relation, over(rhs))
+        case _:
+            raise Rejected("a step with this relation is not summed")
+    if statement != wanted:
+        raise Rejected("the sum is of something else than the step")
+    value(statement.lhs.body if isinstance(statement.lhs, Limit) else statement.lhs, reading)
+    value(statement.rhs, reading)
+
+
+def check_linear(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept the improper integral of f + g, f - g or c f, with c a number, from those of f and g."""
+    match statement.lhs:
+        case Definite(body, symbol, lower, Infinity() as upper) if point_of(lower) == "0":
+            ends = (symbol, lower, upper)
+        case _:
+            raise Rejected("it is no improper integral")
+    found: list[tuple[Poly, Poly]] = []
+    for link in links:
+        match link:
+            case Equation(Definite(f, x, low, high), "=", v) if (x, low, high) == ends:
+                found.append((value(f, reading), value(v, reading)))
+            case _:
+                raise Rejected("a link is no integral between the same ends")
+    _readable(statement, reading)
+    wanted = value(body, reading), value(statement.rhs, reading)
+    match found:
+        case [(f, v)]:
+            offers = [(f.scale(c), v.scale(c)) for c in _ratios(wanted[0], f)]
+        case [(f, v), (g, w)]:
+            offers = [(f + g, v + w), (f - g, v - w)]
+        case _:
+            raise Rejected("one or two integrals are combined")
+    if wanted not in offers:
+        raise Rejected("the integrand or the value is not the combination of the links")
+
+
+def _ratios(poly: Poly, other: Poly) -> list[Fraction]:
+    key = next(iter(other.terms), None)
+    return [poly.terms[key] / other.terms[key]] if key is not None and key in poly.terms else []
+
+
+# ------------------------------------------------------------------------------------------------ roots
+def check_conjugate(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept sum f(Re, Im) = sum f(Re, -Im) over the roots of one real polynomial."""
+    _exactly(0, links)
+    match statement:
+        case Equation(Total(f, i, m), "=", Total(g, j, n)) if (i, m) == (j, n):
+            left, right = value(f, reading), value(g, reading)
+        case _:
+            raise Rejected("both sides must be sums over the same index")
+    _readable(statement, reading)
+    real = reading.real
+    moved = [y for y in real.families.values() if y.index == i.name and any(_uses(left, p, reading) for p in (y.real, y.imaginary))]  # fmt: skip
+    if len(moved) != 1 or reflect(left, moved[0].imaginary, real) != right:
+        raise Rejected("it is no sum over one family and its conjugate")
+
+
+def _uses(poly: Poly, name: str, reading: Reading) -> bool:
+    return any(reading.real.varies(s, name) for s in scalars_of(poly))
+
+
+def check_same_roots(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept equal sums of a function over the roots of two products that are equal for all s."""
+    (lemma,) = _exactly(1, links)
+    if lemma.relation not in ("=", ":=") or statement.relation != "=":
+        raise Rejected("the link is no equation")
+    template: Term | None = None
+    for product, side in zip(_sides(lemma), _sides(statement), strict=True):
+        factors = product.factors if isinstance(product, Product) else (product,)
+        sums = side.addends if isinstance(side, Sum) else (side,)
+        if len(factors) != len(sums):
+            raise Rejected("there are as many sums as products over roots")
+        for factor, addend in zip(factors, sums, strict=True):
+            match factor, addend:
+                case Roots(point, root, index, count), Total(body, i, m) if (index, count) == (i, m):
+                    parts_of = _parts_at(point, root)
+                case _:
+                    raise Rejected("each factor is a product over roots, each addend a sum over them")
+            if template is None:
+                if isinstance(point, Neg):
+                    raise Rejected("the first product is read at s")
+                template, first = body, parts_of
+                _check_function(template, root, reading)
+            elif _replaced(template, dict(zip(first, parts_of, strict=True))) != body:
+                raise Rejected("the sums are of different functions")
+    _readable(statement, reading)
+
+
+def _parts_at(point: Term, root: Symbol) -> tuple[Term, Term]:
+    """Return the real and imaginary part of the zeros of a product over roots, at s or at -s."""
+    plain = RealPart(root), ImaginaryPart(root)
+    return (Neg(plain[0]), Neg(plain[1])) if isinstance(point, Neg) else plain
+
+
+def _check_function(template: Term, root: Symbol, reading: Reading) -> None:
+    """Reject a template that depends on more than the parts of one root."""
+    family = reading.real.families[root.name]
+    for s in scalars_of(value(template, reading)):
+        others = [y for y in reading.real.families.values() if y is not family]
+        if any(reading.real.varies(s, p) for y in others for p in (y.real, y.imaginary)):
+            raise Rejected("the function depends on other roots")
+
+
+def _replaced(term: Term, images: Mapping[Term, Term]) -> Term:
+    if term in images:
+        return images[term]
+
+    def within(part: object) -> object:
+        return _replaced(part, images) if isinstance(part, Term) else tuple(map(within, part)) if isinstance(part, tuple) else part  # fmt: skip
+
+    return term if isinstance(term, Symbol) else replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})  # type: ignore[type-var]  # fmt: skip
+
+
+def check_modulus(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept ln |f| as half the sum of the logarithms of squared distances to the zeros, minus that to the poles.
+
+    Without the bars f must be positive on the axis: each product occurs at s and at -s, so f = |g|^2.
+    """
+    (lemma,) = _exactly(1, links)
+    match statement:
+        case Equation(Log(Modulus(At(body, _, point))), "=", rhs):
+            square = False
+        case Equation(Log(At(body, _, point)), "=", rhs):
+            square = True
+        case _:
+            raise Rejected("the left-hand side is no logarithm of a function at a point")
+    if lemma.relation != "=" or lemma.lhs != body:
+        raise Rejected("the link says something else of the function")
+    real_axis = isinstance(point, Symbol)
+    top, bottom = (lemma.rhs.top, lemma.rhs.bottom) if isinstance(lemma.rhs, Quotient) else (lemma.rhs, None)
+    result = ZERO
+    for sign, side in ((HALF, top), (-HALF, bottom)):
+        factors = () if side is None else side.factors if isinstance(side, Product) else (side,)
+        if not all(isinstance(f, Roots) for f in factors):
+            raise Rejected("the function is no quotient of products over roots")
+        if square and (real_axis or not _palindromic(factors)):
+            raise Rejected("the function is not known to be positive on the axis")
+        for factor in factors:
+            assert isinstance(factor, Roots)
+            result = result + _distances(factor, real_axis, reading).scale(sign)
+    value(statement.lhs, reading)
+    if value(rhs, reading) != result:
+        raise Rejected("the right-hand side is not the sum of the logarithms of the distances")
+
+
+def _palindromic(factors: Sequence[Term]) -> bool:
+    plain = sorted(f.root.name for f in factors if isinstance(f, Roots) and not isinstance(f.point, Neg))
+    turned = sorted(f.root.name for f in factors if isinstance(f, Roots) and isinstance(f.point, Neg))
+    return plain == turned
+
+
+def _distances(factor: Roots, real_axis: bool, reading: Reading) -> Poly:
+    """Return the sum of ln |point - root|^2 over the roots of a real polynomial."""
+    family, real = reading.real.families[factor.root.name], reading.real
+    re, im = scalar(family.real), scalar(family.imaginary)
+    if isinstance(factor.point, Neg):
+        re = -re  # |-jω - λ| = |jω - (-λ)|, and the conjugates are roots as well
+    along = scalar(COMPLEX) - re if real_axis else scalar(FREQUENCY) - im
+    across = im if real_axis else re
+    name = real.find("log", along * along + across * across)
+    if name is None:
+        raise Rejected("the logarithm of a distance is not declared")
+    return total(scalar(name), family.index, family.count, real)
+
+
+def check_trace_of_roots(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept tr M = sum of Re over the roots of det(sI - M), for a real matrix M."""
+    (lemma,) = _exactly(1, links)
+    match lemma, statement:
+        case (
+            Equation(Det(body), "=", Roots(Symbol(name=name), root, index, count)),
+            Equation(Trace(matrix), "=", Total(RealPart(other), i, m)),
+        ) if name == COMPLEX and (root, index, count) == (other, i, m):
+            ((poly,),), ((rest,),) = lower(body, reading), lower(matrix, reading)
+            point = identity(poly.rows).scale(1, (COMPLEX,))
+            if point - poly != rest or not reading.context.is_real(rest):
+                raise Rejected("the determinant is not that of sI - M with M real")
+            _readable(statement, reading)
+        case _:
+            raise Rejected("it takes det(sI - M) as a product over roots, and a trace as the sum of their real parts")
+
+
+# ------------------------------------------------------------------------------------------------ matrices
+def check_exchange(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept det(I + XY) = det(I + YX)."""
+    _exactly(0, links)
+    match statement:
+        case Equation(Det(Sum((Identity(), Product(xs)))), "=", Det(Sum((Identity(), Product(ys))))):
+            if not any(xs[k:] + xs[:k] == ys for k in range(1, len(xs))):
+                raise Rejected("the factors are not exchanged")
+            _readable(statement, reading)
+        case _:
+            raise Rejected("it is about det(I + XY) and det(I + YX)")
+
+
+def determinant_claim(statement: Equation, reading: Reading) -> Poly:
+    """Return the difference of two products of matrices, whose determinants are then the products of theirs."""
+    sides: list[Poly] = []
+    for side in _sides(statement):
+        factors = side.factors if isinstance(side, Product) else (side,)
+        if not all(isinstance(f, Det) for f in factors):
+            raise Rejected("both sides must be products of determinants")
+        matrices = [lower(f.body, reading)[0][0] for f in factors if isinstance(f, Det)]
+        if any(p.rows != p.cols for p in matrices):
+            raise Rejected("a determinant is that of a square matrix")
+        product = matrices[0]
+        for matrix in matrices[1:]:
+            product = product * matrix
+        sides.append(product)
+    return sides[0] - sides[1]
+
+
+def check_positive(statement: Equation, facts: Sequence[str], reading: Reading) -> None:
+    """Accept det V > 0 from V > 0, and tr(M P) >= 0 from M >= 0 and P >= 0."""
+    found = [reading.context.facts[name] for name in facts if name in reading.context.facts]
+    if len(found) != len(facts) or value(statement.rhs, reading) != ZERO:
+        raise Rejected("a fact is missing, or the right-hand side is not zero")
+    match statement.lhs, statement.relation, [f.kind for f in found]:
+        case Det(body), ">", ["pd"]:
+            accepted = found[0].matrix == lower(body, reading)
+        case Trace(body), "≥", ["psd" | "pd", "psd" | "pd"]:
+            ((m,),), ((p,),) = found[0].matrix, found[1].matrix
+            accepted = lower(body, reading) == ((m * p,),)
+        case _:
+            raise Rejected("it is no determinant or trace of what is known to be positive")
+    if not accepted:
+        raise Rejected("the facts are about other matrices")
+    value(statement.lhs, reading)
+
+
+def check_resolvent(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept that tr(X (sI - M)^-1 Y) tends to 0 as s grows along the reals, with X, Y, M free of s."""
+    _exactly(0, links)
+    match statement:
+        case Equation(Limit(Trace(body), Symbol(name=name), Infinity()), "=", zero) if name == COMPLEX:
+            ((poly,),) = lower(body, reading)
+        case _:
+            raise Rejected("it is about the limit of a trace")
+    if value(zero, reading) != ZERO:
+        raise Rejected("the limit is zero")
+    names = {letter: poly for poly, letter in reading.inverses.items()}
+    for m, w in poly.terms:
+        inverses = [parts(a)[0] for a in w if parts(a)[0] in names]
+        if COMPLEX in m or sum(_is_resolvent(names[a], reading) for a in inverses) != 1:
+            raise Rejected("each product has one resolvent, and no s beside it")
+        if any(COMPLEX in k for a in inverses if not _is_resolvent(names[a], reading) for k, _ in names[a].terms):
+            raise Rejected("another factor depends on s")
+
+
+def _is_resolvent(poly: Poly, reading: Reading) -> bool:
+    rest = poly - identity(poly.rows).scale(1, (COMPLEX,))
+    return bool(reading.context.is_real(rest)) and all(COMPLEX not in m for m, _ in rest.terms)
+
+
+def real_coefficients(poly: Poly, reading: Reading) -> bool:
+    """Tell whether a function of s takes conjugate values at conjugate points: its scalars and matrices are real."""
+    real, inverses = reading.real, {letter: p for p, letter in reading.inverses.items()}
+
+    def matrix(p: Poly) -> bool:
+        letters = {parts(a)[0] for _, w in p.terms for a in w}
+        return all(plain(s) for m, _ in p.terms for s in m) and all(
+            a not in reading.context.complex or (a in inverses and matrix(inverses[a])) for a in letters
+        )
+
+    def plain(s: str) -> bool:
+        atom = real.atoms.get(s)
+        if atom is None:
+            return s == COMPLEX or s not in ("j", FREQUENCY)
+        if atom.kind in ("det", "trace"):
+            return matrix(atom.of)
+        return atom.kind not in LOGARITHMS and all(plain(t) for t in scalars_of(atom.of))
+
+    return all(plain(s) for s in scalars_of(poly))
+
+
+# ------------------------------------------------------------------------------------------------ helpers
+def _sides(statement: Equation) -> tuple[Term, Term]:
+    return statement.lhs, statement.rhs
+
+
+def _exactly(number: int, links: Links) -> Links:
+    if len(links) != number:
+        raise Rejected(f"the rule takes {number} steps, the proof names {len(links)}")
+    return links
+
+
+def _readable(statement: Equation, reading: Reading) -> None:
+    for side in _sides(statement):
+        value(side, reading)
+
+
+CHECKS: Mapping[str, Callable[[Equation, Links, Reading], None]] = {
+    "instance": check_instance,
+    "sum over": check_sum,
+    "linear": check_linear,
+    "conjugate": check_conjugate,
+    "same roots": check_same_roots,
+    "modulus": check_modulus,
+    "trace of roots": check_trace_of_roots,
+    "exchange": check_exchange,
+    "resolvent": check_resolvent,
+}
