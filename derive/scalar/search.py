@@ -182,7 +182,8 @@ def _combination(forms: Mapping[int, Form], strict: Sequence[int]) -> dict[int, 
         for m, k in form.items():
             sums.setdefault(m, []).append(z3.RealVal(str(k), context) * unknowns[i])
     solver.add(*(c >= 0 for c in unknowns.values()), *(z3.Sum(addends) == 0 for addends in sums.values()))
-    solver.add(z3.Sum([unknowns[i] for i in strict]) >= 1)
+    total: Any = z3.Sum([unknowns[i] for i in strict])
+    solver.add(total >= 1)
     if solver.check() != z3.sat:
         return None
     model: Any = solver.model()
