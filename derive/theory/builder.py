@@ -292,12 +292,18 @@ class Chain:
         self.end = after
         return self
 
-    def close(self, name: str, *, number: str = "", source: str = "", reason: str | Text = "ends of the chain") -> Step:
-        """State first = last as a lemma that later steps may use, and display the chain."""
+    def close(
+        self,
+        name: str,
+        *,
+        number: str = "",
+        source: str = "",
+        reason: str | Text = "ends of the chain",
+        lemma: bool = True,
+    ) -> Step:
+        """State first = last, as a lemma that later steps may use unless said otherwise, and display the chain."""
         statement = Equation(self.start, "=", self.end)
         proof = Proof(links=tuple(s.name for s in self.links))
-        lemma = self.builder.record(
-            Step(name, statement, "chain", _text(reason), proof, (), number, source, lemma=True)
-        )
-        self.builder.items.append(Derived((*self.links, lemma)))
-        return lemma
+        ends = self.builder.record(Step(name, statement, "chain", _text(reason), proof, (), number, source, lemma))
+        self.builder.items.append(Derived((*self.links, ends)))
+        return ends

@@ -29,6 +29,13 @@ from derive.terms import (
     Zero,
 )
 from derive.theory.builder import Builder, SquareOf
+from derive.theory.kalman_bucy_innovation import (
+    declare_innovation,
+    declare_one_output,
+    derive_innovation,
+    derive_one_output,
+)
+from derive.theory.kalman_bucy_stationary import declare_plant, declare_signals, derive_plant, derive_signals
 
 KEY, THEORY, SOURCE = "kalman-bucy", "kalman-bucy", "001"
 HALF = Number(Fraction(1, 2))
@@ -44,6 +51,10 @@ def theory() -> Theory:
     _optimum(t)
     _steady(t)
     _frequency(t)
+    declare_signals(t)
+    declare_one_output(t)
+    declare_innovation(t)
+    declare_plant(t)
     return t
 
 
@@ -52,12 +63,12 @@ def _plant(t: Theory) -> None:
     C = t.matrix("C", "l", "m", meaning="output matrix")
     L = t.varying("L", "m", "l", parameter=False, meaning="filter gain, any")
     t.direction(L)
-    x = t.signal("x", "m", mean="any", meaning="state")
-    y = t.signal("y", "l", mean="any", meaning="output")
+    x = t.signal("x", "m", meaning="state")
+    y = t.signal("y", "l", meaning="output")
     z = t.signal("z", "l", mean="any", meaning="true output")
     x_hat = t.signal("xbar", "m", Glyph("x", accent="bar"), mean="any", meaning="state estimate")
     y_hat = t.signal("ybar", "l", Glyph("y", accent="bar"), mean="any", meaning="output estimate")
-    e = t.signal("e", "l", mean="any", meaning="innovation")
+    e = t.signal("e", "l", meaning="innovation")
     u = t.signal("u", "m", mean="any", meaning="correction")
     w = t.signal("w", "m", meaning="process noise")
     v = t.signal("v", "l", meaning="measurement noise")
@@ -178,12 +189,16 @@ def _frequency(t: Theory) -> None:
 def lecture() -> Lecture:
     """Return the lecture, every step proved when it is built."""
     b = Builder(theory(), KEY, "The Kalman-Bucy filter", (SOURCE,))
+    derive_signals(b)
     _derive_error(b)
     _derive_covariance(b)
     _derive_gain(b)
     _derive_steady_state(b)
     _derive_output_error(b)
+    derive_one_output(b)
+    derive_innovation(b)
     _derive_factorisation(b)
+    derive_plant(b)
     return b.lecture()
 
 
