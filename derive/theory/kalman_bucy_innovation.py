@@ -20,7 +20,7 @@ HALF = Number(Fraction(1, 2))
 def declare_innovation(t: Theory) -> None:
     """Declare the integral of the innovation, its correlation with the error, and the innovation's spectrum."""
     s = t.symbols
-    A, C, W, V, K, e, v, error, Phi = (s[k] for k in ("A", "C", "W", "V", "K", "e", "v", "xtilde", "Phi"))
+    A, C, W, V, K, e, error, Phi = (s[k] for k in ("A", "C", "W", "V", "K", "e", "xtilde", "Phi"))
     total = t.signal("eta", "l", Glyph("η"), meaning="integral of the innovation")
     t.define("integral of the innovation", Dot(total), e)
     t.define("its start", total.at("t0"), Zero("l", "1"))
@@ -82,15 +82,21 @@ def derive_one_output(b: Builder) -> None:
     b.say("With one output, l = 1, ", C, " is a row, outputs are numbers, and the covariance is a variance:")
     b.given("true output, l = 1", "output error, l = 1", "sigma2")
     chain = b.chain(s["sigma2"])
-    number = {"number": "u13", "source": SOURCE}
-    chain.to(Expect(difference * difference), "definition; a number is its own transpose", **number)
+    chain.to(Expect(difference * difference), "definition; a number is its own transpose", number="u13", source=SOURCE)
     gap = z - y_hat
-    chain.to(Expect(gap * gap), "definition of the output error", ["output error, l = 1"], rule="apply", **number)
+    chain.to(
+        Expect(gap * gap),
+        "definition of the output error",
+        ["output error, l = 1"],
+        rule="apply",
+        number="u13",
+        source=SOURCE,
+    )
     outputs = ["true output, l = 1", "output estimate, l = 1", "error"]
     chain.to(Expect(C * error * error.T * C.T), "both outputs", outputs, rule="apply")
     chain.to(C * P_L * C.T, "expectation is linear")
-    chain.to(C * P * C.T, "the Kalman gain, in steady state", ["attained", "steady P"], **number)
-    chain.close("output error variance", **number)
+    chain.to(C * P * C.T, "the Kalman gain, in steady state", ["attained", "steady P"], number="u13", source=SOURCE)
+    chain.close("output error variance", number="u13", source=SOURCE)
 
 
 def derive_innovation(b: Builder) -> None:
@@ -176,15 +182,14 @@ def _derive_whiteness(b: Builder) -> None:
     s = b.theory.symbols
     C, V, e, v, error, total, S = (s[k] for k in ("C", "V", "e", "v", "xtilde", "eta", "S"))
     b.say("The error is uncorrelated with all that the filter has seen since the initial time. Therefore")
-    number = {"number": "u14", "source": SOURCE}
     white = Integral(V * Delta("t", "τ"), "τ")
     chain = b.chain(Expect(e * Integral(e.at("τ"), "τ").T))
     chain.to(Expect(e * total.T), "the integral of the innovation", ["integral written out"], rule="apply")
     chain.to(Expect((C * error + v) * total.T), "the innovation", ["innovation from the error"], rule="apply")
     chain.to(C * S + HALF * V, "the correlations with the integral")
     chain.to(HALF * V, "the error is uncorrelated with the integral", ["orthogonality"])
-    chain.to(white, "a Dirac delta at the end of the interval counts half", **number)
-    chain.close("the innovation is white", lemma=False, **number)
+    chain.to(white, "a Dirac delta at the end of the interval counts half", number="u14", source=SOURCE)
+    chain.close("the innovation is white", lemma=False, number="u14", source=SOURCE)
     b.say(
         "This holds from every initial time on, however short the interval: all of the correlation comes from its end. "
         "That is what it means that the autocorrelation of ", e, " is ", V, " times a Dirac delta of the lag."

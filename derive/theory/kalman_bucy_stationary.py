@@ -76,7 +76,7 @@ def _named(t: Theory, name: str, shows: Term) -> Symbol:
 def declare_plant(t: Theory) -> None:
     """Declare what the spectrum of a stable plant needs: hypotheses, correlation over time, one-sided transforms."""
     s = t.symbols
-    A, C, W, V, w, v, x, y, z = (s[k] for k in ("A", "C", "W", "V", "w", "v", "x", "y", "z"))
+    A, C, V, w, v, x, y = (s[k] for k in ("A", "C", "V", "w", "v", "x", "y"))
     X = t.matrix("X", "m", "m", symmetric=True, meaning="stationary covariance of the state", unit="[state]^2")
     R = t.matrix("R_x", "m", "m", Glyph("R", sub="x"), constant=False, meaning="correlation of the state in time")
     start = "w, v and the initial state are uncorrelated"
@@ -133,11 +133,10 @@ def derive_signals(b: Builder) -> None:
     b.say("The covariance of the signal is therefore the mean of its spectrum.")
     b.given("covariance")
     chain = b.chain(s["Sigma_x"])
-    number = {"number": "u4", "source": SOURCE}
-    chain.to(s["mean of x(t) x(t)"], "definition", ["covariance"], **number)
-    chain.to(s["R_x(0)"], "the autocorrelation at lag 0", ["autocorrelation at 0"], **number)
-    chain.to(s["integral of Phi_x"], "the inversion at lag 0", ["inversion at 0"], **number)
-    chain.close("covariance from the spectrum", **number)
+    chain.to(s["mean of x(t) x(t)"], "definition", ["covariance"], number="u4", source=SOURCE)
+    chain.to(s["R_x(0)"], "the autocorrelation at lag 0", ["autocorrelation at 0"], number="u4", source=SOURCE)
+    chain.to(s["integral of Phi_x"], "the inversion at lag 0", ["inversion at 0"], number="u4", source=SOURCE)
+    chain.close("covariance from the spectrum", number="u4", source=SOURCE)
     b.say("The signal is white if its spectrum is constant; then")
     b.given("constant spectrum", "white", numbers=("", "u5"), source=SOURCE)
 
