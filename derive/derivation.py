@@ -28,6 +28,7 @@ from derive.rules import (
     variation,
 )
 from derive.scalars import RULES, check_scalar, scalar_claims
+from derive.spectral import Entry
 from derive.terms import (
     Dot,
     Equation,
@@ -49,7 +50,7 @@ Rule = Literal[
     "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
     "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
     "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "trace of roots", "determinant", "exchange",
-    "positive", "resolvent",
+    "positive", "resolvent", "single",
 ]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 PARTS: Mapping[str, tuple[str, ...]] = {
@@ -138,6 +139,8 @@ def _bodies(lhs: Term, rhs: Term) -> tuple[Term, Term]:
     match lhs, rhs:
         case (Dot(a), Dot(b)) | (Expect(a), Expect(b)) | (Trace(a), Trace(b)):
             return (a, b) if not isinstance(a, (Dot, Expect)) else _bodies(a, b)
+        case (Entry(a), Entry(b)):
+            return a, b
         case (Integral(a, s), Integral(b, t)) if s == t:
             return a, b
         case (Image(f, a), Image(g, b)) if f == g:

@@ -270,10 +270,9 @@ def _spectral(term: Term, reading: Reading) -> Poly:
 def spectral_atom(name: str, term: Term, reading: Reading) -> Atom:
     """Return the atom that a determinant, trace, product over roots, sum or logarithm stands for."""
     match term:
-        case Det(body):
-            return Atom(name, "det", _square(body, reading))
-        case Trace(body):
-            return Atom(name, "trace", _square(body, reading))
+        case Det(body) | Trace(body):
+            poly, kind = _square(body, reading), "det" if isinstance(term, Det) else "trace"
+            return Atom(name, kind, poly, over="" if reading.context.is_real(poly) else COMPLEX)
         case Roots(point, root, index, count):
             family = _family(root, reading)
             if (family.index, family.count) != (index.name, count.name):
@@ -328,13 +327,17 @@ def _square(body: Term, reading: Reading) -> Poly:
 def _find(atom: Atom, reading: Reading) -> str | None:
     found = reading.real.find(atom.kind, atom.of, atom.by, atom.over)
     if found is None and atom.kind == "det":
-        return reading.real.find("det", reading.context.alphabet.transpose(atom.of))
+        return reading.real.find("det", reading.context.alphabet.transpose(atom.of), None, atom.over)
     return found
 
 
 def _trace(body: Term, reading: Reading) -> Poly:
     """Read a trace as a sum of the traces of products, each of which is declared."""
-    poly, alphabet, result = _square(body, reading), reading.context.alphabet, ZERO
+    return _traces(_square(body, reading), reading)
+
+
+def _traces(poly: Poly, reading: Reading) -> Poly:
+    alphabet, result = reading.context.alphabet, ZERO
     known = {tuple(alphabet.cyclic(a.of).items()): a.name for a in reading.real.atoms.values() if a.kind == "trace"}
     for (m, w), c in poly.terms.items():
         name = known.get(tuple(alphabet.cyclic(Poly({((), w): 1}, poly.rows, poly.cols)).items()))
@@ -345,14 +348,13 @@ def _trace(body: Term, reading: Reading) -> Poly:
 
 
 def _entry(body: Term, reading: Reading) -> Poly:
-    """Read the entry of a matrix with one row and one column, which is its determinant and its trace."""
-    size = _square(body, reading).rows
-    if not any(f.kind == "single" and f.matrix[0][0].rows == size for f in reading.context.facts.values()):
-        raise MissingInverse(f"the dimension {size} is not known to be 1")
-    try:
-        return _spectral(Det(body), reading)
-    except MissingInverse:
-        return _trace(body, reading)
+    """Read the entry of a matrix with one row and one column, which is its trace; that of the identity is 1."""
+    poly = _square(body, reading)
+    if not any(f.kind == "single" and f.matrix[0][0].rows == poly.rows for f in reading.context.facts.values()):
+        raise MissingInverse(f"the dimension {poly.rows} is not known to be 1")
+    rest = Poly({(m, w): c for (m, w), c in poly.terms.items() if w}, poly.rows, poly.cols)
+    ones = Poly({(m, ()): c for (m, w), c in poly.terms.items() if not w}, ANY, ANY)
+    return _traces(rest, reading) + ones
 
 
 def total(poly: Poly, index: str, count: str, real: Real) -> Poly:

@@ -96,9 +96,9 @@ class Real:
         atom = self.atoms.get(name)
         if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False
-        if atom.kind in LOGARITHMS:
+        if atom.kind in (*LOGARITHMS, *MATRIX):
             return atom.over == variable
-        if atom.kind in MATRIX or (atom.kind == "sum" and atom.over == variable):
+        if atom.kind == "sum" and atom.over == variable:
             return False
         below = scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
         return any(self.varies(s, variable) for s in below)

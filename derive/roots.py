@@ -6,21 +6,21 @@ instance: a step about arbitrary parameters, with others in their place. sum ove
 summed. conjugate: the roots of a real polynomial may be replaced by their conjugates. same roots: equal products over
 roots have equal sums over roots. linear: the sum or difference of two improper integrals. modulus: ln |f| where f is a
 quotient of products over roots. roots' trace: tr M is the sum of the real parts of the eigenvalues. exchange:
-det(I + XY) = det(I + YX). det > 0 of a positive definite matrix. trace sign: tr(MP) >= 0 for M, P >= 0. resolvent:
+det(I + XY) = det(I + YX). single: a matrix with one row and column is its determinant. det > 0 of a positive definite matrix. trace sign: tr(MP) >= 0 for M, P >= 0. resolvent:
 tr(X (sI - M)^-1 Y) tends to 0. Standard library only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from fractions import Fraction
 
 from derive.functions import COMPLEX, Definite, Infinity, Limit, Log, Quotient, point_of, total, value
 from derive.kernel import Poly, Rejected, identity, parts
 from derive.real import FREQUENCY, LOGARITHMS, ZERO, reflect, scalar, scalars_of
-from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
-from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, lower, walk
+from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, Total
+from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower, walk
 
 Links = Sequence[Equation]
 HALF = Fraction(1, 2)
@@ -74,23 +74,25 @@ def _put(item: object, images: Mapping[Symbol, Term]) -> object:
 def check_sum(statement: Equation, links: Links, reading: Reading) -> None:
     """Accept the sum over an index of a step: of both sides, of a limit, or of an improper integral."""
     (lemma,) = _exactly(1, links)
-    if not isinstance(statement.rhs, Total):
-        raise Rejected("the right-hand side is not a sum")
-    index, count = statement.rhs.index, statement.rhs.count
+    found = statement.lhs.body if isinstance(statement.lhs, (Limit, Definite)) else statement.lhs
+    if not isinstance(found, Total):
+        raise Rejected("the left-hand side is not a sum")
+    index, count = found.index, found.count
     over: Callable[[Term], Term] = lambda body: Total(body, index, count)  # noqa: E731
     match lemma:
         case Equation(Limit(body, x, point), "=", limit):
             wanted = Equation(Limit(over(body), x, point), "=", over(limit))
         case Equation(Definite(body, x, lower, Infinity() as upper), "=", integral) if point_of(lower) == "0":
             wanted = Equation(Definite(over(body), x, lower, upper), "=", over(integral))
+        case Equation(lhs, "≥", Zero()):
+            wanted = Equation(over(lhs), "≥", lemma.rhs)
         case Equation(lhs, "=" | "≥" as relation, rhs):
             wanted = Equation(over(lhs), relation, over(rhs))
         case _:
             raise Rejected("a step with this relation is not summed")
     if statement != wanted:
         raise Rejected("the sum is of something else than the step")
-    value(statement.lhs.body if isinstance(statement.lhs, Limit) else statement.lhs, reading)
-    value(statement.rhs, reading)
+    _readable(statement, reading)
 
 
 def check_linear(statement: Equation, links: Links, reading: Reading) -> None:
@@ -279,6 +281,16 @@ def check_exchange(statement: Equation, links: Links, reading: Reading) -> None:
             raise Rejected("it is about det(I + XY) and det(I + YX)")
 
 
+def check_single(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept det X = X for a matrix with one row and one column."""
+    _exactly(0, links)
+    match statement:
+        case Equation(Det(body), "=", Entry(other)) if body == other:
+            _readable(statement, reading)
+        case _:
+            raise Rejected("it is about a determinant and the only entry")
+
+
 def determinant_claim(statement: Equation, reading: Reading) -> Poly:
     """Return the difference of two products of matrices, whose determinants are then the products of theirs."""
     sides: list[Poly] = []
@@ -340,12 +352,12 @@ def _is_resolvent(poly: Poly, reading: Reading) -> bool:
 
 def real_coefficients(poly: Poly, reading: Reading) -> bool:
     """Tell whether a function of s takes conjugate values at conjugate points: its scalars and matrices are real."""
-    real, inverses = reading.real, {letter: p for p, letter in reading.inverses.items()}
+    real, meanings = reading.real, dict(_meanings(reading))
 
     def matrix(p: Poly) -> bool:
         letters = {parts(a)[0] for _, w in p.terms for a in w}
         return all(plain(s) for m, _ in p.terms for s in m) and all(
-            a not in reading.context.complex or (a in inverses and matrix(inverses[a])) for a in letters
+            a not in reading.context.complex or (a in meanings and matrix(meanings[a])) for a in letters
         )
 
     def plain(s: str) -> bool:
@@ -357,6 +369,21 @@ def real_coefficients(poly: Poly, reading: Reading) -> bool:
         return atom.kind not in LOGARITHMS and all(plain(t) for t in scalars_of(atom.of))
 
     return all(plain(s) for s in scalars_of(poly))
+
+
+def _meanings(reading: Reading) -> Iterator[tuple[str, Poly]]:
+    """Iterate over the letters that may be complex, with what they are the inverse of, or what defines them."""
+    yield from ((letter, poly) for poly, letter in reading.inverses.items())
+    for poly in reading.context.relations.values():
+        single = [w[0] for m, w in poly.terms if not m and len(w) == 1 and w[0] in reading.context.complex]
+        if len(single) == 1:
+            rest = {(m, w): c for (m, w), c in poly.terms.items() if w != (single[0],)}
+            if not any(parts(a)[0] in reading.context.complex - _inverse_names(reading) for _, w in rest for a in w):
+                yield single[0], Poly(rest, poly.rows, poly.cols)
+
+
+def _inverse_names(reading: Reading) -> set[str]:
+    return set(reading.inverses.values())
 
 
 # ------------------------------------------------------------------------------------------------ helpers
@@ -371,8 +398,9 @@ def _exactly(number: int, links: Links) -> Links:
 
 
 def _readable(statement: Equation, reading: Reading) -> None:
+    """Reject what cannot be read; of a limit, which the rule itself gives, the body is read."""
     for side in _sides(statement):
-        value(side, reading)
+        value(side.body if isinstance(side, Limit) else side, reading)
 
 
 CHECKS: Mapping[str, Callable[[Equation, Links, Reading], None]] = {
@@ -384,5 +412,6 @@ CHECKS: Mapping[str, Callable[[Equation, Links, Reading], None]] = {
     "modulus": check_modulus,
     "trace of roots": check_trace_of_roots,
     "exchange": check_exchange,
+    "single": check_single,
     "resolvent": check_resolvent,
 }

@@ -13,6 +13,7 @@ from dataclasses import replace
 from derive.functions import Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value
 from derive.kernel import Poly, Rejected
 from derive.real import (
+    FREQUENCY,
     LOGARITHMS,
     SIGNS,
     ZERO,
@@ -30,6 +31,7 @@ from derive.real import (
 )
 from derive.roots import CHECKS, real_coefficients
 from derive.rules import Fact
+from derive.spectral import At, Modulus
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term
 
 RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument", *CHECKS})
@@ -92,6 +94,8 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
             raise Rejected(f"{because} is not a reason why {name} exists")
     _check_order(atom, reading)
     relation, facts = atom_relation(atom, reading.real), atom_facts(atom)
+    if kind == "times log" and relation is None and any(reading.real.varies(s, FREQUENCY) for s in scalars_of(atom.of)):
+        raise MissingInverse(f"the logarithm in {name} is not declared yet")
     if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
         facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
     real = replace(reading.real, atoms={**reading.real.atoms, name: atom})
@@ -155,7 +159,7 @@ def _check_argument(statement: Equation, links: Sequence[Equation], reading: Rea
             value(f, reading), value(b, reading)
             if value(Limit(b, x, Infinity()), reading) != value(v, reading) or _moves(v, x, reading):
                 raise Rejected("the limit of the equal function is another")
-        case Equation(Log(u), "=", Log(v)), [Equation(a, "=", b)] if (u, v) == (a, b):
+        case Equation(Log(u), "=", Log(v)), [Equation(a, "=", b)] if (u, v) == (a, b) or _same_place(u, v, a, b):
             value(statement.lhs, reading), value(statement.rhs, reading)
         case (
             Equation(Definite(f, x, low, Infinity()), "=", Definite(g, y, bottom, Infinity())),
@@ -164,6 +168,15 @@ def _check_argument(statement: Equation, links: Sequence[Equation], reading: Rea
             value(statement.lhs, reading), value(statement.rhs, reading)
         case _:
             raise Rejected("the arguments are not what the link says")
+
+
+def _same_place(u: Term, v: Term, a: Term, b: Term) -> bool:
+    """Tell whether u and v are the functions a and b, or their moduli, at one point."""
+    match u, v:
+        case (Modulus(At() as f), Modulus(At() as g)) | (At() as f, At() as g):
+            return (f.body, g.body) == (a, b) and (f.symbol, f.point) == (g.symbol, g.point)
+        case _:
+            return False
 
 
 def _check_squeeze(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:

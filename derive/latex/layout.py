@@ -439,7 +439,7 @@ def _spectral(term: Term) -> Box:
             return row((name, Op(APPLY, "tight"), layout(body) if simple else Fenced(layout(body), "[", "]")))
         case RealPart(root) | ImaginaryPart(root):
             name = Letter("Re" if isinstance(term, RealPart) else "Im", upright=True)
-            return row((name, Op(APPLY, "tight"), layout(root)))
+            return row((name, Op(THIN, "tight"), layout(root)))
         case Modulus(body):
             return Fenced(layout(body), "|", "|")
         case Total(body, index, count) | Roots(body, _, index, count):
@@ -447,6 +447,8 @@ def _spectral(term: Term) -> Box:
             start = row((layout(index), Op("=", "tight"), Digits("1")))
             difference = Fenced(row((layout(body), Op("−"), layout(term.root)))) if isinstance(term, Roots) else None
             return row((Scripted(large, start, layout(count)), difference or at_least(body, OPEN)))
+        case TimesLog(x, Zero()):
+            return layout(Product((x, Log(Power(x, 2)))))
         case TimesLog(x, a):
             return layout(Product((x, Log(Sum((Power(x, 2), Power(a, 2)))))))
         case TimesArctan(x, a):
@@ -456,13 +458,13 @@ def _spectral(term: Term) -> Box:
 
 
 def _placed(term: At) -> Term:
-    """Write a function at a point: the point for its variable, ω for jω in the argument of a symbol."""
-    name = term.point.name if isinstance(term.point, Symbol) else "ω"
+    """Write a function at a point: the point for its variable; a spectrum at jω is one at ω."""
 
     def within(part: object) -> object:
         if part == term.symbol:
             return term.point
         if isinstance(part, Symbol):
+            name = term.point.name if isinstance(term.point, Symbol) else "ω" if part.glyph.letter == "Φ" else "jω"
             shown = part.show_args and tuple(name if a == term.symbol.name else a for a in part.show_args)
             return replace(part, show_args=shown)
         if isinstance(part, Term):
