@@ -1,0 +1,342 @@
+"""The log-integral of a quotient of polynomials by its zeros and poles: propositions 1 and 2 of the source.
+
+One root is integrated with an antiderivative and its limits; a polynomial is the sum over its roots.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
+
+from derive.context import Theory
+from derive.derivation import Step
+from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Power, Quotient, Rate
+from derive.spectral import At, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
+from derive.terms import Equation, Glyph, Neg, Product, Symbol, Term
+from derive.theory.scalar_builder import ScalarBuilder
+from derive.theory.scalar_continuous import ONE, ZERO, square
+
+SOURCE = "001"
+HALF, QUARTER = Fraction(1, 2), Fraction(1, 4)
+SIDES = (("-", -1), ("+", 1))  # ω - β and ω + β
+
+
+# ------------------------------------------------------------------------------------------------ declarations
+def declare(t: Theory) -> None:
+    """Declare the frequency, an arbitrary root, and a function by its zeros and poles."""
+    pi = t.symbols["π"] = PI
+    t.assume("π > 0", pi, ">", text="the circle's number is positive")
+    t.atom("reciprocal", pi, "π > 0", "1/π")
+    t.scalar("s", meaning="a complex number")
+    t.scalar("j", Glyph("j", upright=True), meaning="imaginary unit")
+    t.scalar("i", meaning="number of a root")
+    t.scalar("m", meaning="number of states")
+    w = t.scalar("ω", meaning="frequency")
+    t.assume("ω > 0", w, ">", text="half of the axis is enough where the integrand is even")
+    t.assume("s > 0", t.symbols["s"], ">", text="where s is real, it is large", case=True)
+    a, b = t.parameter("α", meaning="real part of a root"), t.parameter("β", meaning="imaginary part of a root")
+    t.atom("absolute", a, name="|α|")
+    t.atom("part", a, name="max(0,α)")
+    for name in ("ω", "s"):
+        variable = t.symbols[name]
+        t.atom("reciprocal", variable, f"{name} > 0", f"1/{name}")
+        t.atom("log", square(variable), f"{name}^2 > 0", f"ln {name}^2")
+    for sign, shift in SIDES:
+        x = _shifted(w, b, shift)
+        t.generic(f"distance{sign}", x, a, w, "except at the frequency of a root on the axis")
+        _distance(t, square(x) + square(a), f"u{sign}", f"distance{sign}")
+        t.atom("spectral", TimesLog(x, a), name=f"x ln u{sign}")
+        t.atom("spectral", TimesArctan(x, a), name=f"arctan{sign}")
+    t.generic("distance along the reals", t.symbols["s"] - a, b, t.symbols["s"], "except at a real root")
+    _distance(t, square(t.symbols["s"] - a) + square(b), "u(s)", "distance along the reals")
+    t.atom("spectral", TimesLog(w, ZERO), name="ω ln ω^2")
+    t.atom("spectral", TimesLog(b, a), name="β ln u(0)")
+    t.atom("spectral", TimesArctan(b, a), name="arctan(0)")
+    t.atom("improper", root_integrand(w, a, b), name="integral of a root")
+    _declare_function(t)
+
+
+def _distance(t: Theory, u: Term, name: str, why: str) -> None:
+    t.atom("reciprocal", u, why, f"1/{name}")
+    t.atom("log", u, why, f"ln {name}")
+
+
+def _shifted(w: Term, b: Term, sign: int) -> Term:
+    return w + b if sign > 0 else w - b
+
+
+def root_integrand(w: Term, a: Term, b: Term) -> Term:
+    """Return ln|jω - λ|^2 + ln|jω - conj λ|^2 - 2 ln ω^2 for the root λ = a + jb."""
+    low, high = square(w - b) + square(a), square(w + b) + square(a)
+    return Log(low) + Log(high) - 2 * Log(square(w))
+
+
+def axis(t: Theory) -> Product:
+    """Return jω."""
+    return Product((t.symbols["j"], t.symbols["ω"]))
+
+
+def declare_family(t: Theory, root: Symbol, *signs: int) -> None:
+    """Declare what the rules read of a family of roots: logarithms of distances, sums of parts, products."""
+    index, count = t.symbols[t.families[root.name].index], t.symbols[t.families[root.name].count]
+    re, im, w, s, name = RealPart(root), ImaginaryPart(root), t.symbols["ω"], t.symbols["s"], root.name
+    for sign, shift in SIDES:
+        t.generic(f"distance{sign} {name}", _shifted(w, im, shift), re, w, "except at the frequency of a root")
+        t.atom("log", square(_shifted(w, im, shift)) + square(re), f"distance{sign} {name}", f"ln u{sign} {name}")
+        t.atom("spectral", Total(Log(square(_shifted(w, im, shift)) + square(re)), index, count), name=f"sum ln u{sign} {name}")  # fmt: skip
+    for shift in signs:
+        x, key = _shifted(s, re, -shift), f"u(s){'' if shift > 0 else '-'} {name}"
+        t.generic(f"distance {key}", x, im, s, "except at a real root")
+        t.atom("log", square(x) + square(im), f"distance {key}", f"ln {key}")
+        t.atom("spectral", Total(Log(square(x) + square(im)), index, count), name=f"sum ln {key}")
+        point = s if shift > 0 else Neg(s)
+        t.atom("spectral", Roots(point, root, index, count), name=f"product {key}")
+        t.atom("reciprocal", Roots(point, root, index, count), f"product {key} ≠ 0", f"1/product {key}")
+    t.atom("absolute", re, name=f"|Re {name}|")
+    t.atom("part", re, name=f"max(0,Re {name})")
+    for key, body in (("Re", re), ("|Re|", Abs(re)), ("max", Max(re))):
+        t.atom("spectral", Total(body, index, count), name=f"sum {key} {name}")
+
+
+def declare_integrals(t: Theory, name: str, function: Term, zeros: Symbol, poles: Symbol) -> None:
+    """Declare the logarithm of a quotient on the axis and its integral over half of the axis."""
+    w, i, m = t.symbols["ω"], t.symbols["i"], t.symbols["m"]
+    t.atom("spectral", Log(Modulus(At(function, t.symbols["s"], axis(t)))), name=f"ln|{name}(jω)|")
+    t.atom("improper", Log(Modulus(At(function, t.symbols["s"], axis(t)))), name=f"integral of ln|{name}|")
+    pair = _pair(w, zeros, poles)
+    t.atom("improper", Total(pair, i, m), name=f"integral of the roots of {name}")
+    t.atom("improper", QUARTER * Total(pair, i, m), name=f"quarter of the integral of the roots of {name}")
+    t.atom("improper", pair, name=f"integral of one root of {name}")
+
+
+def _pair(w: Term, zeros: Symbol, poles: Symbol) -> Term:
+    """Return the integrand of one zero less that of one pole."""
+    one, other = (
+        [Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))) for _, k in SIDES] for r in (zeros, poles)
+    )
+    return one[0] + one[1] - other[0] - other[1]
+
+
+def _declare_function(t: Theory) -> None:
+    i, m, s = (t.symbols[k] for k in ("i", "m", "s"))
+    zero, pole = (t.roots(n, i, m, Glyph(n, sub="i"), meaning=f"{w} of f") for n, w in (("φ", "zeros"), ("η", "poles")))
+    for root in (zero, pole):
+        declare_family(t, root, 1)
+        t.atom("improper", root_integrand(t.symbols["ω"], RealPart(root), ImaginaryPart(root)), name=f"integral of {root.name}")  # fmt: skip
+    p, q, f = (_function(t, n, w) for n, w in (("p", "numerator"), ("q", "denominator"), ("f", "transfer function")))
+    t.define("p", p, Roots(s, zero, i, m), "monic, with its zeros")
+    t.define("q", q, Roots(s, pole, i, m), "monic of the same order, with the poles")
+    t.define("f", f, Quotient(p, q))
+    t.assume("f tends to 1", Limit(f, s, Infinity()), "=", ONE, text="both polynomials are monic")
+    declare_integrals(t, "f", f, zero, pole)
+    t.atom("spectral", Log(Modulus(At(f, s, s))), name="ln|f(s)|")
+    t.assume("poles are stable", Neg(RealPart(pole)), ">", text="all poles of f are stable", case=True)
+
+
+def _function(t: Theory, name: str, meaning: str) -> Symbol:
+    t.scalar(name, meaning=meaning)
+    t.symbols[name] = replace(t.symbols[name], show_args=("s",))
+    return t.symbols[name]
+
+
+# ------------------------------------------------------------------------------------------------ one root
+def derive(b: ScalarBuilder) -> None:
+    """Derive the integral of one root, and of a quotient of polynomials."""
+    _derive_root(b)
+    _derive_along_the_reals(b)
+    _derive_part(b)
+    _derive_function(b)
+
+
+def _derive_root(b: ScalarBuilder) -> None:
+    t = b.theory
+    w, a, c = (t.symbols[k] for k in ("ω", "α", "β"))
+    b.heading("The log-integral of one root")
+    b.say("Let ", a, " + j", c, " be any root. With its conjugate it contributes to the logarithm of a modulus")
+    b.given("ω > 0")
+    b.sign("ω^2 > 0", Equation(square(w), ">", ZERO), "a square", ["ω > 0"])
+    low, high = (TimesLog(_shifted(w, c, k), a) for _, k in SIDES)
+    turns = [TimesArctan(_shifted(w, c, k), a) for _, k in SIDES]
+    G = low + high - 2 * TimesLog(w, ZERO) + 2 * turns[0] + 2 * turns[1]
+    b.state(
+        "antiderivative",
+        Equation(Rate(G, w), "=", root_integrand(w, a, c)),
+        "differentiate; x ln(x² + α²) and |α| arctan(x/|α|) are continuous, 0 where they are not defined",
+    )
+    ratios = {sign: Log(square(_shifted(w, c, k)) + square(a)) - Log(square(w)) for sign, k in SIDES}
+    for sign, k in SIDES:
+        _derive_tail(b, w, a, c, sign, k)
+    far = w * ratios["-"] + w * ratios["+"] - c * ratios["-"] + c * ratios["+"] + 2 * turns[0] + 2 * turns[1]
+    b.state("antiderivative far out", Equation(G, "=", far), "the terms with ln ω² cancel")
+    limit = 2 * PI * Abs(a)
+    b.linked(
+        "at infinity", Equation(Limit(G, w, Infinity()), "=", limit), "same argument",
+        "the logarithms cancel, arctan tends to π/2", ["antiderivative far out"],
+    )  # fmt: skip
+    b.state("at zero", Equation(Limit(G, w, ZERO), "=", ZERO), "both functions are odd")
+    b.linked(
+        "root lemma", Equation(Definite(root_integrand(w, a, c), w, ZERO, Infinity()), "=", limit), "integral",
+        "the difference of the limits", ["antiderivative", "at infinity", "at zero"],
+    )  # fmt: skip
+
+
+def _derive_tail(b: ScalarBuilder, w: Term, a: Term, c: Term, sign: str, k: int) -> None:
+    """Derive the limits of ln(u/ω²) and of ω ln(u/ω²), with u = (ω ± β)² + α²."""
+    u, slope = square(_shifted(w, c, k)) + square(a), 2 * c if k > 0 else -(2 * c)
+    ratio, size = Log(u) - Log(square(w)), square(a) + square(c)
+    up, down, name = f"ln u{sign} - ln ω^2 ≤", f"ln ω^2 - ln u{sign} ≤", f" ({sign}β)"
+    b.sign("above" + name, Equation(Quotient(slope, w) + Quotient(size, square(w)), "≥", ratio), "ln x ≤ x - 1", [up], squares=[])  # fmt: skip
+    b.sign("below" + name, Equation(Neg(Quotient(w * slope + size, u)), "≥", -ratio), "ln x ≤ x - 1", [down])
+    b.linked("logarithm" + name, Equation(Limit(ratio, w, Infinity()), "=", ZERO), "squeeze", "between both bounds", ["above" + name, "below" + name])  # fmt: skip
+    rest = (3 * square(c) - square(a)) * w + slope * size
+    b.sign("above, times ω" + name, Equation(Quotient(size, w), "≥", w * ratio - slope), "the first bound", [up, "ω > 0"])  # fmt: skip
+    b.sign("below, times ω" + name, Equation(Quotient(rest, u), "≥", slope - w * ratio), "the second bound", [down, "ω > 0"])  # fmt: skip
+    b.linked(
+        "tail" + name, Equation(Limit(w * ratio, w, Infinity()), "=", slope), "squeeze", "both bounds vanish",
+        ["above, times ω" + name, "below, times ω" + name],
+    )  # fmt: skip
+
+
+def _derive_along_the_reals(b: ScalarBuilder) -> None:
+    t = b.theory
+    s, a, c = (t.symbols[k] for k in ("s", "α", "β"))
+    u, size = square(s - a) + square(c), square(a) + square(c)
+    ratio, rest = Log(u) - Log(square(s)), (3 * square(a) - square(c)) * s - 2 * a * size
+    up, down = "ln u(s) - ln s^2 ≤", "ln s^2 - ln u(s) ≤"
+    b.say("Along the reals the same logarithm decays like 1/s:")
+    b.given("s > 0")
+    b.sign("s^2 > 0", Equation(square(s), ">", ZERO), "a square", ["s > 0"])
+    b.sign("above, times s", Equation(Quotient(size, s), "≥", s * ratio + 2 * a), "ln x ≤ x - 1", [up, "s > 0"])
+    b.sign("below, times s", Equation(Quotient(rest, u), "≥", -(2 * a) - s * ratio), "ln x ≤ x - 1", [down, "s > 0"])
+    b.linked(
+        "along the reals", Equation(Limit(s * ratio, s, Infinity()), "=", -(2 * a)), "squeeze", "both bounds vanish",
+        ["above, times s", "below, times s"],
+    )  # fmt: skip
+
+
+def _derive_part(b: ScalarBuilder) -> None:
+    a = b.theory.symbols["α"]
+    b.say("The modulus of a real number by its positive part:")
+    b.equal("modulus", Equation(Abs(a), "=", 2 * Max(a) - a), ["|α| ≥ 0", "max(0,α) ≥ 0", "max(0,α) ≥ its argument"])
+
+
+# ------------------------------------------------------------------------------------------------ a family of roots
+def derive_family(b: ScalarBuilder, root: Symbol, *, reals: int = 0) -> None:
+    """Derive for the roots of a real polynomial: |Re| by the positive part, and the decay along the reals, in sums.
+
+    ``reals`` is 1 for the decay at s, -1 for that at -s as well.
+    """
+    t, re = b.theory, RealPart(root)
+    i, m = t.symbols[t.families[root.name].index], t.symbols[t.families[root.name].count]
+    one = Equation(Abs(re), "=", 2 * Max(re) - re)
+    _instance(b, f"modulus of {root.name}", one, "modulus", i, m)
+    s, im = t.symbols["s"], ImaginaryPart(root)
+    for sign in (1, -1)[: (0, 1, 2)[abs(reals) + (reals < 0)]]:
+        part = re if sign > 0 else Neg(re)
+        ratio = Log(square(s - part) + square(im)) - Log(square(s))
+        decay = Equation(Limit(s * ratio, s, Infinity()), "=", -(2 * part))
+        _instance(b, f"decay of {root.name}" + "-" * (sign < 0), decay, "along the reals", i, m)
+
+
+def _instance(b: ScalarBuilder, name: str, one: Equation, lemma: str, i: Symbol, m: Symbol) -> None:
+    """Put a root into a lemma about arbitrary numbers, and sum over the roots."""
+    b.linked(name, one, "instance", "for each root", [lemma])
+    match one:
+        case Equation(Limit(body, x, point), relation, rhs):
+            whole = Equation(Limit(Total(body, i, m), x, point), relation, Total(rhs, i, m))
+        case Equation(Definite(body, x, lower, upper), relation, rhs):
+            whole = Equation(Definite(Total(body, i, m), x, lower, upper), relation, Total(rhs, i, m))
+        case Equation(lhs, relation, rhs):
+            whole = Equation(Total(lhs, i, m), relation, Total(rhs, i, m))
+    b.linked(f"{name}, summed", whole, "sum over", "summed over the roots", [name])
+
+
+def derive_root(b: ScalarBuilder, root: Symbol) -> None:
+    """Put each root of a family into the root lemma."""
+    w, re, im = b.theory.symbols["ω"], RealPart(root), ImaginaryPart(root)
+    half = Definite(root_integrand(w, re, im), w, ZERO, Infinity())
+    b.linked(f"root lemma of {root.name}", Equation(half, "=", 2 * PI * Abs(re)), "instance", "for each root", ["root lemma"])  # fmt: skip
+
+
+def derive_integral(b: ScalarBuilder, name: str, function: Term, zeros: Symbol, poles: Symbol, by_roots: str) -> Step:
+    """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from the step ``by_roots``."""
+    t = b.theory
+    w, s, i, m = (t.symbols[k] for k in ("ω", "s", "i", "m"))
+    log = Log(Modulus(At(function, s, axis(t))))
+    sums = {(r.name, sign): Total(Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))), i, m)
+            for r in (zeros, poles) for sign, k in SIDES}  # fmt: skip
+    one = HALF * sums[zeros.name, "-"] - HALF * sums[poles.name, "-"]
+    b.linked(f"ln|{name}|", Equation(log, "=", one), "modulus", "the modulus of a product", [by_roots])
+    for root in (zeros, poles):
+        if f"conjugates of {root.name}" not in b.steps:
+            pair = Equation(sums[root.name, "-"], "=", sums[root.name, "+"])
+            b.linked(f"conjugates of {root.name}", pair, "conjugate", "complex roots come in conjugate pairs", [])
+    pair, conjugates = _pair(w, zeros, poles), [f"conjugates of {r.name}" for r in (zeros, poles)]
+    even = Total(pair, i, m)
+    b.state(f"ln|{name}|, even", Equation(log, "=", QUARTER * even), "pairs of conjugates", [f"ln|{name}|", *conjugates])
+    value = 2 * PI * Abs(RealPart(zeros)) - 2 * PI * Abs(RealPart(poles))
+    half: Callable[[Term], Definite] = lambda body: Definite(body, w, ZERO, Infinity())  # noqa: E731
+    b.linked(
+        f"one root of {name}", Equation(half(pair), "=", value), "linear", "a zero less a pole",
+        [f"root lemma of {r.name}" for r in (zeros, poles)],
+    )  # fmt: skip
+    b.linked(f"roots of {name}", Equation(half(even), "=", Total(value, i, m)), "sum over", "summed over the roots", [f"one root of {name}"])  # fmt: skip
+    b.linked(f"quarter of the roots of {name}", Equation(half(QUARTER * even), "=", QUARTER * Total(value, i, m)), "linear", "times a number", [f"roots of {name}"])  # fmt: skip
+    b.linked(f"half of the axis of {name}", Equation(half(log), "=", half(QUARTER * even)), "same argument", "the same integrand", [f"ln|{name}|, even"])  # fmt: skip
+    return b.state(
+        f"log-integral of {name}",
+        Equation(whole(b, log), "=", HALF * Total(Abs(RealPart(zeros)), i, m) - HALF * Total(Abs(RealPart(poles)), i, m)),
+        "the integrand is even", [f"half of the axis of {name}", f"quarter of the roots of {name}"],
+    )  # fmt: skip
+
+
+def whole(b: ScalarBuilder, body: Term) -> Term:
+    """Return (1/2π) times the integral over the frequency axis."""
+    return Quotient(ONE, 2 * PI) * Definite(body, b.theory.symbols["ω"], Neg(Infinity()), Infinity())
+
+
+# ------------------------------------------------------------------------------------------------ propositions 1 and 2
+def _derive_function(b: ScalarBuilder) -> None:
+    t = b.theory
+    f, p, q, s, zero, pole, i, m = (t.symbols[k] for k in ("f", "p", "q", "s", "φ", "η", "i", "m"))
+    b.heading("A counterpart of Jensen's formula")
+    b.say("Let f have numerator and denominator of the same order, with real coefficients, and let it tend to 1:")
+    b.given("p", "q", "f", "f tends to 1", numbers=("", "", "5", "6"), source=SOURCE)
+    b.state("f by its roots", Equation(f, "=", Quotient(Roots(s, zero, i, m), Roots(s, pole, i, m))), "both definitions", ["f", "p", "q"])  # fmt: skip
+    for root in (zero, pole):
+        derive_root(b, root)
+        derive_family(b, root, reals=1)
+    derive_integral(b, "f", f, zero, pole, "f by its roots")
+    b.say("Along the reals the same modulus gives the first term of the formula:")
+    log, sums = Log(Modulus(At(f, s, s))), [_along(b, r, 1) for r in (zero, pole)]
+    b.linked("ln|f| along the reals", Equation(log, "=", HALF * sums[0] - HALF * sums[1]), "modulus", "the modulus of a product", ["f by its roots"])  # fmt: skip
+    decay = [Total(s * (Log(square(s - RealPart(r)) + square(ImaginaryPart(r))) - Log(square(s))), i, m) for r in (zero, pole)]  # fmt: skip
+    b.state("s ln|f|", Equation(HALF * s * log, "=", QUARTER * decay[0] - QUARTER * decay[1]), "the terms with ln s² cancel", ["ln|f| along the reals"])  # fmt: skip
+    limit = HALF * Total(RealPart(pole), i, m) - HALF * Total(RealPart(zero), i, m)
+    first = Limit(HALF * s * log, s, Infinity())
+    b.linked("first term", Equation(first, "=", limit), "same argument", "root by root", ["s ln|f|"])
+    b.say("Proposition 1, for stable poles; zeros on the imaginary axis are allowed:")
+    b.given("poles are stable")
+    stable = Equation(Abs(RealPart(pole)), "=", Neg(RealPart(pole)))
+    b.equal("stable poles", stable, [f"|Re {pole.name}| ≥ 0", "poles are stable"], reason="the real part is negative")
+    b.linked("stable poles, summed", Equation(Total(stable.lhs, i, m), "=", Total(stable.rhs, i, m)), "sum over", "summed over the poles", ["stable poles"])  # fmt: skip
+    integral, zeros, poles = whole(b, Log(Modulus(At(f, s, axis(t))))), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)  # fmt: skip
+    known = ["log-integral of f", "first term", "modulus of φ, summed"]
+    b.state(
+        "proposition 1", Equation(integral, "=", first + zeros), "|x| = 2 max(0, x) - x, summed over the zeros",
+        [*known, "stable poles, summed"], number="7", source=SOURCE,
+    )  # fmt: skip
+    b.say("Proposition 2, for any poles:")
+    b.given("f", "f tends to 1", numbers=("9", "10"), source=SOURCE)
+    b.state(
+        "proposition 2", Equation(integral, "=", first + zeros - poles), "|x| = 2 max(0, x) - x, for zeros and poles",
+        [*known, "modulus of η, summed"], number="11", source=SOURCE,
+    )  # fmt: skip
+
+
+def _along(b: ScalarBuilder, root: Symbol, sign: int) -> Total:
+    """Return the sum of ln|s - root|^2 along the reals, or of ln|s + root|^2."""
+    t, re = b.theory, RealPart(root)
+    s, i, m = (t.symbols[k] for k in ("s", "i", "m"))
+    return Total(Log(square(_shifted(s, re, -sign)) + square(ImaginaryPart(root))), i, m)
