@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.numeric.modes import format_mode
+from derive.numeric.modes import distance_to_stability, format_mode, spectral_scale
 from derive.numeric.plant import Plant
+from lmi.enclosure import Enclosure
 from lmi.routes import Answer, RouteSpec, cost_of, output_of, output_rounding
 from lmi.scaling import balanced
 
@@ -23,6 +24,10 @@ TRUSTED = 1e-7
 
 UNEXPLAINED = 10.0
 """A route disagrees when it differs by more than this many times the errors that it and Riccati admit."""
+
+NEAR = 1e-6
+"""Distance of a mode of A - L C from the boundary of stability, relative to A, within which it is named as the cause of
+what goes wrong."""
 
 VANISHING = 1e-9
 """A result smaller than this, relative to the natural size of the plant's coordinates, is zero: differences are then
@@ -45,8 +50,11 @@ class Route:
             steps from it, for the integral it is the quadrature's estimate.
         seconds: wall time.
         independent_of: names of the routes with which it shares no computation but the plant's data.
+        output_error: proved bound of the error of `output`, absolute, or None when nothing is proved.
+        output_digits: decimal digits of `output` that are proved correct, or None.
         agrees: whether its result and Riccati's are both accurate, and equal.
-        disagrees: whether its result differs from Riccati's by more than the errors that both admit.
+        disagrees: whether its result differs from Riccati's by more than the errors that both admit, or is proved to.
+        excluded: whether its output is proved to be wrong by more than the error that it admits.
     """
 
     name: str
@@ -59,8 +67,11 @@ class Route:
     residual: float | None
     seconds: float
     independent_of: tuple[str, ...]
+    output_error: float | None
+    output_digits: int | None
     agrees: bool
     disagrees: bool
+    excluded: bool
 
     @property
     def trusted(self) -> bool:
@@ -70,24 +81,26 @@ class Route:
 
 @dataclass(frozen=True, eq=False)
 class Reference:
-    """Riccati's answer and the sizes to which differences from it are relative."""
+    """Riccati's answer, the sizes to which differences from it are relative, and what is proved."""
 
     plant: Plant
     answer: Answer
     trace_size: float
     cost_size: float
     output_size: float
+    enclosure: Enclosure
 
     @classmethod
-    def of(cls, plant: Plant, answer: Answer) -> "Reference":
+    def of(cls, plant: Plant, answer: Answer, enclosure: Enclosure) -> "Reference":
         """Take Riccati's answer; its results set the sizes, or where they vanish the balanced coordinates do."""
         scaling = balanced(plant)
         unit = scaling.T @ scaling.T.T
         sizes = float(np.trace(unit)), cost_of(plant, unit), scaling.rate * plant.l
         if answer.P is None:
-            return cls(plant, answer, *sizes)
+            return cls(plant, answer, *sizes, enclosure)
         results = float(np.trace(answer.P)), cost_of(plant, answer.P), _output_excess(plant, answer.P)
-        return cls(plant, answer, *(_size(value, natural) for value, natural in zip(results, sizes, strict=True)))
+        trace, cost, output = (_size(value, natural) for value, natural in zip(results, sizes, strict=True))
+        return cls(plant, answer, trace, cost, output, enclosure)
 
     def difference(self, answer: Answer) -> float | None:
         """Return the relative difference of an answer from Riccati's."""
@@ -113,6 +126,31 @@ class Reference:
             return error
         return max(error, output_rounding(self.plant, self.answer.P) / self.output_size)
 
+    def modes_in_the_way(self) -> tuple[complex, ...]:
+        """Return the modes of Riccati's A - L C on the boundary of stability or beside it."""
+        plant, gain = self.plant, self.answer.gain
+        if self.answer.boundary_modes or gain is None or not np.isfinite(gain).all():
+            return self.answer.boundary_modes
+        modes = np.linalg.eigvals(plant.A - gain @ plant.C)
+        distance = np.abs(distance_to_stability(modes, plant.time))
+        return tuple(complex(x) for x in modes[distance <= NEAR * spectral_scale(plant.A, plant.time)])
+
+    def excludes(self, answer: Answer) -> bool:
+        """Tell whether an answer's output is proved to be wrong by more than the error that it admits.
+
+        Nothing is wrong about modes that Riccati reads as on the boundary and the exact numbers have beside it.
+        """
+        return self._apart(answer) and not self.answer.boundary_modes
+
+    @property
+    def reads_as_boundary(self) -> bool:
+        """Whether Riccati's strong solution is another than that of the plant's numbers taken as exact."""
+        return self._apart(self.answer) and bool(self.answer.boundary_modes)
+
+    def _apart(self, answer: Answer) -> bool:
+        apart, admitted = (x / self.output_size for x in (self.enclosure.apart(answer.output), answer.output_error))
+        return apart > max(AGREEMENT, UNEXPLAINED * admitted)
+
 
 def _output_excess(plant: Plant, P: Matrix) -> float:
     """Return tr(C P C' V^-1), in discrete time ln det(C P C' + V) - ln det V: zero when P is, whatever the units."""
@@ -128,9 +166,10 @@ def judged(spec: RouteSpec, answer: Answer, seconds: float, reference: Reference
     P, plant = answer.P, reference.plant
     difference, residual = reference.difference(answer), reference.residual(answer)
     agrees = disagrees = False
+    excluded = reference.excludes(answer)
     if difference is not None and residual is not None:
         errors = max(residual, reference.error(answer))
-        agrees = errors <= TRUSTED and difference <= AGREEMENT
+        agrees = errors <= TRUSTED and difference <= AGREEMENT and not excluded
         disagrees = not difference <= max(AGREEMENT, UNEXPLAINED * errors)
     return Route(
         name=spec.name,
@@ -138,31 +177,41 @@ def judged(spec: RouteSpec, answer: Answer, seconds: float, reference: Reference
         cost=None if P is None else cost_of(plant, P),
         output=answer.output,
         gain=answer.gain,
-        status=_status(answer, difference, residual, disagrees, reference.answer.boundary_modes),
+        status=_status(answer, difference, residual, (disagrees, excluded), reference),
         relative_difference=difference,
         residual=residual,
         seconds=seconds,
         independent_of=spec.independent_of,
+        output_error=reference.enclosure.distance(answer.output),
+        output_digits=reference.enclosure.correct_digits(answer.output),
         agrees=agrees,
-        disagrees=disagrees,
+        disagrees=disagrees or excluded,
+        excluded=excluded,
     )
 
 
 def _status(
-    answer: Answer,
-    difference: float | None,
-    residual: float | None,
-    disagrees: bool,
-    boundary_modes: tuple[complex, ...],
+    answer: Answer, difference: float | None, residual: float | None, wrong: tuple[bool, bool], reference: Reference
 ) -> str:
-    """Return the status of a route, in which a doubtful result is called so."""
+    """Return the status of a route, in which a doubtful result is called so, and one that is `wrong` first of all."""
+    disagrees, excluded = wrong
+    if excluded:
+        return "disagrees: its output is proved to be wrong by more than its own error explains"
     if disagrees:
         return f"disagrees: differs from riccati by {difference:.1e}, more than the errors of both explain"
-    if residual is None or residual <= TRUSTED:
+    if answer.status.startswith("not ") or (residual is not None and residual <= TRUSTED):
         return answer.status
-    if boundary_modes:
-        modes = ", ".join(dict.fromkeys(format_mode(mode) for mode in boundary_modes))
+    modes = ", ".join(dict.fromkeys(map(format_mode, reference.modes_in_the_way())))
+    if residual is not None and reference.answer.boundary_modes:
         return f"not applicable: boundary mode {modes}, reached only in the limit"
+    refusal = _refusal(answer, residual)
+    return f"{refusal}; mode {modes} of A - L C is on the boundary or beside it" if modes else refusal
+
+
+def _refusal(answer: Answer, residual: float | None) -> str:
+    """Return why a result is not taken."""
+    if residual is None:
+        return answer.status
     if not np.isfinite(residual):
         doubted = answer.status.startswith("inaccurate")
         return answer.status if doubted else "inaccurate: Newton steps do not confirm its covariance"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.numeric.modes import distance_to_stability
+from derive.numeric.modes import distance_to_stability, format_mode
 from derive.numeric.plant import Plant
 from lmi.covariance import covariance_error, solve_covariance
 from lmi.programs.h2 import h2
@@ -18,7 +18,9 @@ from lmi.residual import riccati_residual
 from lmi.scaling import balanced, scaled_plant
 from lmi.solve import Status
 
-__all__ = ["ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_of", "output_rounding"]
+__all__ = [
+    "ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_error", "output_of", "output_rounding",
+]  # fmt: skip
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -36,6 +38,7 @@ class Answer:
         gain: observer gain (n, l), or None.
         output: tr(C P C' V^-1) [1/s], in discrete time ln det(C P C' + V), or None.
         error: estimated absolute error, of tr(M P) when there is P, else of the output; infinite when P solves nothing.
+        output_error: estimated absolute error of the output.
         boundary_modes: modes that a strong solution leaves on the boundary of stability.
     """
 
@@ -44,6 +47,7 @@ class Answer:
     gain: Matrix | None = None
     output: float | None = None
     error: float = np.inf
+    output_error: float = np.inf
     boundary_modes: tuple[complex, ...] = ()
 
 
@@ -77,6 +81,13 @@ def output_rounding(plant: Plant, P: Matrix) -> float:
     return float(plant.n * np.finfo(float).eps * np.sum(np.abs(np.linalg.inv(innovation)) * size))
 
 
+def output_error(plant: Plant, P: Matrix, error: Matrix) -> float:
+    """Return what an error of P, and its rounding, do to `output_of`."""
+    innovation = plant.V if plant.is_continuous else plant.C @ P @ plant.C.T + plant.V
+    lacking = np.linalg.solve(innovation, plant.C @ error @ plant.C.T)
+    return float(np.linalg.norm(lacking, "nuc")) + output_rounding(plant, P)
+
+
 def nuclear_norm(plant: Plant, D: Matrix) -> float:
     """Return the sum of |eigenvalues| of M^(1/2) D M^(1/2): |tr(M D)| without the cancellation between its signs."""
     sizes, directions = np.linalg.eigh(plant.M)
@@ -89,13 +100,14 @@ def _riccati(plant: Plant) -> Answer:
 
     solution = solve_riccati(plant)
     if solution.status == "failed":
-        return Answer("failed: no stabilising solution of the Riccati equation was reached")
+        modes = np.linalg.eigvals(plant.A - plant.N @ np.linalg.solve(plant.V, plant.C))
+        mode = format_mode(modes[np.argmin(np.abs(distance_to_stability(modes, plant.time)))])
+        return Answer(f"failed: no stabilising solution was reached; the mode nearest to the boundary is {mode}")
     P, gain = solution.P, solution.gain
     if solution.status == "stabilising":
         return _covariance(plant, "stabilising", P, gain, covariance_error(plant, P))
     modes = tuple(complex(mode) for mode in solution.boundary_modes)
-    error = solution.residual * abs(cost_of(plant, P))
-    return Answer("strong", P, gain, output_of(plant, P), error, modes)
+    return _strong(plant, P, gain, solution.residual, modes)
 
 
 def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
@@ -119,21 +131,29 @@ def _nlp(plant: Plant) -> Answer:
     if result.status == "failed":
         return Answer("failed: no stabilising gain was found")
     if result.status == "strong":
-        error = result.stationarity * abs(cost_of(plant, result.P))
-        return Answer("strong", result.P, result.gain, output_of(plant, result.P), error)
+        return _strong(plant, result.P, result.gain, result.stationarity)
     return _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
 
 
 def _covariance(plant: Plant, status: str, P: Matrix, gain: Matrix, error: Matrix | None) -> Answer:
-    size = np.inf if error is None else nuclear_norm(plant, error)
-    return Answer(status, P, gain, output_of(plant, P), size)
+    if error is None:
+        return Answer(status, P, gain, output_of(plant, P))
+    return Answer(status, P, gain, output_of(plant, P), nuclear_norm(plant, error), output_error(plant, P, error))
+
+
+def _strong(
+    plant: Plant, P: Matrix, gain: Matrix, rtol: float, modes: tuple[complex, ...] = (), status: str = "strong"
+) -> Answer:
+    """Return a covariance whose relative error is that of its equation, as Newton steps need a stable closed loop."""
+    error = rtol * abs(cost_of(plant, P))
+    return Answer(status, P, gain, output_of(plant, P), error, output_error(plant, P, rtol * P), modes)
 
 
 def _integral(plant: Plant) -> Answer:
     from derive.numeric.spectrum import output_error_integral
 
     result = output_error_integral(plant)
-    return Answer("solved", output=result.value, error=result.error_estimate)
+    return Answer("solved", output=result.value, error=result.error_estimate, output_error=result.error_estimate)
 
 
 def _hamiltonian(plant: Plant) -> Answer:
@@ -142,7 +162,8 @@ def _hamiltonian(plant: Plant) -> Answer:
     result = hamiltonian_route(plant)
     if not np.isfinite(result.value):
         return Answer("inaccurate: computed modes do not split into stable and unstable ones")
-    return Answer("solved", output=result.value, error=_eigenvalue_error(plant, result.modes))
+    error = _eigenvalue_error(plant, result.modes)
+    return Answer("solved", output=result.value, error=error, output_error=error)
 
 
 def _eigenvalue_error(plant: Plant, modes: NDArray[Any]) -> float:
@@ -166,9 +187,8 @@ def _closed_form(plant: Plant) -> Answer:
         return Answer(f"not applicable: for one state and one output, not {plant.n} and {plant.l}")
     solution = solve_scalar(plant)
     P, gain = np.array([[solution.P]]), np.array([[solution.gain]])
-    error = riccati_residual(plant, P) * abs(cost_of(plant, P))
     status = "strong" if solution.status == "strong" else "solved"
-    return Answer(status, P, gain, output_of(plant, P), error)
+    return _strong(plant, P, gain, riccati_residual(plant, P), status=status)
 
 
 _CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2")

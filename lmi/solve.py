@@ -4,9 +4,14 @@ A solver's "optimal" is a claim. Every answer is judged by what can be recompute
 eigenvalues of the matrices that should be positive semidefinite, and the equations that should hold.
 """
 
+import os
+import shutil
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
+from tempfile import TemporaryFile
 from typing import Any
 
 import cvxpy as cp
@@ -18,6 +23,9 @@ __all__ = ["TO_THE_LAST_DIGIT", "Accuracy", "Outcome", "Status", "solve_program"
 
 FEASIBLE = 1e-6
 """A matrix is positive semidefinite, or an equation holds, when it fails by less than this, relative to its size."""
+
+STANDARD_ERROR = 2
+"""Its file descriptor, by which compiled code writes."""
 
 TIME_LIMIT = 60.0
 """Seconds that one call of the solver may take."""
@@ -85,13 +93,39 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT) -> O
         "chordal_decomposition_enable": False,
     }
     problem = program.problem
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
+    try:
+        with warnings.catch_warnings(), _panics_as_errors():
+            warnings.simplefilter("ignore")
             problem.solve(solver=cp.CLARABEL, **options)
-        except cp.SolverError as error:
-            return Outcome(Status.FAILED, str(error).split(".")[0])
+    except cp.SolverError as error:
+        return Outcome(Status.FAILED, str(error).split(".")[0])
     return _judged(problem)
+
+
+@contextmanager
+def _panics_as_errors() -> Iterator[None]:
+    """Turn a panic of the solver into a SolverError.
+
+    A panic of compiled code is a BaseException that no module exports, and prints its own report to the standard error
+    of the process, which is therefore held back: dropped after a panic, passed on otherwise.
+    """
+    with TemporaryFile() as held:
+        stderr, panicked = os.dup(STANDARD_ERROR), False
+        os.dup2(held.fileno(), STANDARD_ERROR)
+        try:
+            yield
+        except BaseException as error:
+            panicked = type(error).__name__ == "PanicException"
+            if not panicked:
+                raise
+            raise cp.SolverError(f"panic: {error}") from None
+        finally:
+            os.dup2(stderr, STANDARD_ERROR)
+            os.close(stderr)
+            if not panicked:
+                held.seek(0)
+                with os.fdopen(STANDARD_ERROR, "wb", closefd=False) as passed_on:
+                    shutil.copyfileobj(held, passed_on)
 
 
 def _judged(problem: cp.Problem) -> Outcome:

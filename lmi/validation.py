@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from os import PathLike
 from time import perf_counter
@@ -12,12 +12,10 @@ import numpy as np
 
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
 from lmi.comparison import Reference, Route, judged
+from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
 from lmi.routes import ROUTES, Answer, RouteSpec
 
 __all__ = ["Route", "Validation", "Verdict", "validate"]
-
-NUMERICAL_ERRORS = (ArithmeticError, RuntimeError, ValueError, MemoryError)
-"""What a route may raise when its numbers run out; NumPy's LinAlgError is a ValueError, CasADi raises RuntimeError."""
 
 
 class Verdict(Enum):
@@ -35,10 +33,19 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, eq=False)
 class Validation:
-    """A plant and what every route says about it; the first route is Riccati."""
+    """A plant, what every route says about it, and what is proved; the first route is Riccati.
+
+    Attributes:
+        plant: the plant.
+        routes: the table.
+        enclosure: what is proved when the plant's numbers are taken as exact.
+        reads_as_boundary: whether the routes read modes as on the boundary that the exact numbers have beside it.
+    """
 
     plant: Plant
     routes: tuple[Route, ...]
+    enclosure: Enclosure
+    reads_as_boundary: bool
 
     def route(self, name: str) -> Route:
         """Return the route of that name."""
@@ -46,7 +53,7 @@ class Validation:
 
     @property
     def verdict(self) -> Verdict:
-        """Return "agree" when a route independent of Riccati confirms it and none disagrees."""
+        """Return "agree" when a route independent of Riccati confirms it and none disagrees, or is proved wrong."""
         if any(route.disagrees for route in self.routes):
             return Verdict.DISAGREE
         riccati = self.routes[0]
@@ -60,6 +67,7 @@ class Validation:
             "schema": "lmi-validate/1",
             "plant": _plant_dict(self.plant),
             "routes": [_route_dict(route) for route in self.routes],
+            "enclosure": self.enclosure.as_dict(),
             "certificate": None,
             "verdict": self.verdict.value,
         }
@@ -68,11 +76,11 @@ class Validation:
 def validate(
     plant: Plant | str | PathLike[str] | Mapping[str, Any], *, progress: Callable[[str], None] | None = None
 ) -> Validation:
-    """Compute a plant's optimal error covariance by every route and compare the results.
+    """Compute a plant's optimal error covariance by every route and compare the results, also with what is proved.
 
     Args:
         plant: a `Plant`, the path of a plant file, or a mapping with the keys of one.
-        progress: called with the name of each route as it starts.
+        progress: called with the name of each route as it starts, first with "enclosure".
 
     Returns:
         The table of routes with its verdict. A route that fails or does not apply is in it, with the reason.
@@ -86,19 +94,29 @@ def validate(
         'agree'
     """
     plant = _as_plant(plant)
-    run = _Run(plant, progress or (lambda name: None))
+    progress = progress or (lambda name: None)
+    progress("enclosure")
+    enclosure, run = enclose(plant), _Run(plant, progress)
     first, *others = ROUTES
     answer, seconds = run(first)
-    reference = Reference.of(plant, answer)
+    answer = _with_proved_error(plant, answer, enclosure)
+    reference = Reference.of(plant, answer, enclosure)
     routes = [judged(first, answer, seconds, reference)]
     routes += [judged(spec, *run(spec), reference) for spec in others]
-    return Validation(plant, tuple(routes))
+    return Validation(plant, tuple(routes), enclosure, reference.reads_as_boundary)
 
 
 def _as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:
     if isinstance(plant, Plant):
         return plant
     return plant_from_mapping(plant) if isinstance(plant, Mapping) else load_plant(plant)
+
+
+def _with_proved_error(plant: Plant, answer: Answer, enclosure: Enclosure) -> Answer:
+    """Return Riccati's answer with the error of its cost as it is proved, where that is less than the estimate."""
+    if answer.P is None:
+        return answer
+    return replace(answer, error=min(answer.error, enclosure.cost_distance(plant, answer.P)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,6 +150,8 @@ def _route_dict(route: Route) -> dict[str, Any]:
         "status": route.status,
         "relative_difference": _finite(route.relative_difference),
         "residual": _finite(route.residual),
+        "output_error": route.output_error,
+        "output_digits": route.output_digits,
         "seconds": route.seconds,
         "independent_of": list(route.independent_of),
     }

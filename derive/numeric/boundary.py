@@ -37,7 +37,9 @@ class Boundary:
     modes: NDArray[np.complexfloating[Any, Any]]
 
 
-def unexcited_boundary(F: Matrix, W: Matrix, time: Time, noise_size: float, slack: float = 1.0) -> Boundary:
+def unexcited_boundary(
+    F: Matrix, W: Matrix, time: Time, rate: float, noise_size: float, slack: float = 1.0
+) -> Boundary:
     """Find the largest subspace X with F' X in X, W X = 0 and the spectrum of F' on X on the boundary.
 
     On X every solution P >= 0 vanishes: for a left eigenvector x, 2 Re(lambda) x*Px = |V^(-1/2) C P x|^2 gives
@@ -49,11 +51,12 @@ def unexcited_boundary(F: Matrix, W: Matrix, time: Time, noise_size: float, slac
         F: A - N V^-1 C (n, n), balanced.
         W: W - N V^-1 N' (n, n), in the same coordinates.
         time: "continuous" or "discrete".
+        rate: size of A, to which rounding in F is relative.
         noise_size: size of the process noise to which rounding in W is relative.
         slack: factor on the tolerances, for data that carry the rounding of earlier computations.
     """
     n = len(F)
-    scale = spectral_scale(F, time)
+    scale = max(spectral_scale(F, time), rate)
     nothing = Boundary(np.eye(n), np.zeros((n, 0)), np.zeros(0, complex))
     near = invariant_subspace(F.T, lambda mode: bool(abs(distance_to_stability(mode, time)) <= CANDIDATE_RTOL * scale))
     rtol = slack * n * RANK_RTOL

@@ -1,5 +1,6 @@
 """A solver's answer is judged by its numbers, not by its word."""
 
+import os
 import warnings
 
 import cvxpy as cp
@@ -97,3 +98,37 @@ def test_warnings_of_the_modelling_layer_do_not_reach_the_user():
         for build in PROGRAMS:
             solve_program(build(plant), Accuracy(1e-15, 1e-8))
     assert caught == []
+
+
+class PanicException(BaseException):
+    """As raised by a panic of compiled code: no Exception, and its report is printed by the process."""
+
+
+def test_a_panic_of_the_solver_is_a_failure_and_prints_nothing(monkeypatch, capfd):
+    def solve(self, *args, **kwargs):
+        os.write(2, b"thread panicked\n")
+        raise PanicException("Eigval error")
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+    outcome = solve_program(h2(example_plant()))
+    assert (outcome.status, outcome.raw_status) == (Status.FAILED, "panic: Eigval error")
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("error", [None, KeyboardInterrupt()])
+def test_what_else_is_written_meanwhile_is_passed_on(error, monkeypatch, capfd):
+    honest = cp.Problem.solve
+
+    def solve(self, *args, **kwargs):
+        os.write(2, b"progress\n")
+        if error is not None:
+            raise error
+        return honest(self, *args, **kwargs)
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+    if error is None:
+        assert solve_program(h2(example_plant())).status is Status.SOLVED
+    else:
+        with pytest.raises(KeyboardInterrupt):
+            solve_program(h2(example_plant()))
+    assert capfd.readouterr().err == "progress\n"

@@ -65,6 +65,52 @@ STRONG = {
 }
 """Name: plant, its strong P, the modes that stay on the boundary."""
 
+TWO = np.kron(np.eye(2), OSCILLATOR)
+POSITIONS = np.kron(np.eye(2), [[1, 0]])
+
+EDGES = {
+    "excited integrators": continuous(A=np.eye(3, k=1), C=np.eye(1, 3), W=np.diag([0, 0, 1]), V=1),
+    "excited oscillator": continuous(A=OSCILLATOR, C=[[1, 0]], W=np.diag([0, 1]), V=1),
+    "two equal oscillators": continuous(A=TWO, C=POSITIONS, W=np.eye(4), V=np.eye(2)),
+    "two equal oscillators, one excited": continuous(A=TWO, C=POSITIONS, W=np.diag([0, 1, 0, 0]), V=np.eye(2)),
+    "two equal oscillators in a chain": continuous(
+        A=TWO + np.kron(np.eye(2, k=1), np.eye(2)), C=np.eye(1, 4), W=np.zeros((4, 4)), V=1
+    ),
+    "repeated unstable modes": continuous(A=np.eye(2), C=np.eye(2), W=NOTHING, V=np.eye(2)),
+    "unstable Jordan block": continuous(A=[[1, 1], [0, 1]], C=[[1, 0]], W=NOTHING, V=1),
+    "repeated stable modes": continuous(A=-np.eye(3), C=np.ones((1, 3)), W=np.eye(3), V=1),
+    "uncontrollable unstable mode": continuous(A=np.diag([-1, 2, -3]), C=[[1, 1, 1]], W=np.diag([1, 0, 0]), V=1),
+    "uncontrollable boundary mode": continuous(A=np.diag([-1, 0, -3]), C=[[1, 1, 1]], W=np.diag([1, 0, 0]), V=1),
+    "unseen stable mode": continuous(A=np.diag([-1, -2]), C=[[1, 0]], W=np.eye(2), V=1),
+    "more outputs than states": continuous(
+        A=[[0, 1], [-2, 1]], C=[[1, 0], [2, 0], [0, 1]], W=np.eye(2), V=np.eye(3) + 0.5
+    ),
+    "C of low rank": continuous(A=[[0, 1], [-2, 1]], C=[[1, 0], [2, 0], [0, 0]], W=np.eye(2), V=np.eye(3) + 0.5),
+    "C = 0": continuous(A=[[0, 1], [-2, -1]], C=NOTHING, W=np.eye(2), V=np.eye(2)),
+    "almost on the boundary, stable": continuous(A=np.diag([-1e-9, -1]), C=[[1, 1]], W=np.diag([0, 1]), V=1),
+    "almost on the boundary, unstable": continuous(A=np.diag([1e-9, -1]), C=[[1, 1]], W=np.diag([0, 1]), V=1),
+    "cross term of two outputs": continuous(
+        A=[[0, 1], [2, -0.3]], C=np.eye(2), W=np.eye(2), V=np.eye(2), N=[[0.2, 0], [0.5, -0.3]]
+    ),
+    "excited constant": discrete(A=1, C=1, Q=1, R=1),
+    "excited rotation": discrete(A=ROTATION, C=[[1, 0]], Q=np.diag([0, 1]), R=1),
+    "random walk twice": discrete(A=[[1, 1], [0, 1]], C=[[1, 0]], Q=np.diag([0, 1]), R=1),
+    "constant slope": discrete(A=[[1, 1], [0, 1]], C=[[1, 0]], Q=NOTHING, R=1),
+    "two equal rotations, one excited": discrete(
+        A=np.kron(np.eye(2), ROTATION), C=POSITIONS, Q=np.diag([0, 1, 0, 0]), R=np.eye(2)
+    ),
+    "delay line": discrete(A=np.eye(3, k=1), C=np.eye(1, 3), Q=np.eye(3), R=1),
+    "repeated unstable modes, discrete": discrete(A=2 * np.eye(2), C=np.eye(2), Q=NOTHING, R=np.eye(2)),
+    "uncontrollable boundary mode, discrete": discrete(
+        A=np.diag([0.5, 1, 0]), C=[[1, 1, 1]], Q=np.diag([1, 0, 0]), R=1
+    ),
+    "C of low rank, discrete": discrete(A=[[0, 1], [-2, 1]], C=[[1, 0], [2, 0]], Q=np.eye(2), R=np.eye(2) + 0.5),
+    "C = 0, discrete": discrete(A=[[0, 0.5], [0.1, 0]], C=[[0, 0]], Q=np.eye(2), R=1),
+    "almost on the circle": discrete(A=np.diag([1 + 1e-9, 0.5]), C=[[1, 1]], Q=np.diag([0, 1]), R=1),
+    "cross term, discrete": discrete(A=[[1, 1], [0, 1.2]], C=[[1, 0]], Q=np.eye(2), R=1, S=[[0.3], [0.5]]),
+}
+"""Boundary, repeated and uncontrollable modes, several outputs, C of low rank: plants at an edge of the theory."""
+
 STABILISING = {
     "unstable without noise": (continuous(A=1, C=1, W=0, V=1), [[2]]),
     "stable without noise": (continuous(A=-1, C=1, W=0, V=1), [[0]]),

@@ -1,5 +1,6 @@
 """Four routes to one number: they agree where they should, and a route that is off is found out."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -8,9 +9,11 @@ from flint import arb
 from scipy.integrate import quad
 
 import derive.numeric.output_cost as module
+from derive.numeric.log_det import enclose_by_eigenvalues, enclose_by_polynomials, enclose_by_quadrature
+from derive.numeric.modes import distance_to_stability, format_mode
 from derive.numeric.output_cost import enclose_output_cost, four_routes
 from derive.numeric.plant import example_plant
-from tests.derive.numeric.plants import STABILISING, STRONG, random_plant
+from tests.derive.numeric.plants import EDGES, STABILISING, STRONG, random_plant
 
 TIMES = ["continuous", "discrete"]
 NAMES = ["riccati", "hamiltonian", "integral"]
@@ -31,6 +34,28 @@ def test_degenerate_plants(case):
     result = four_routes(case[0])
     assert result.enclosure.enclosed
     assert {route.name: route.agrees for route in result.routes} == dict.fromkeys(NAMES, True)
+
+
+@pytest.mark.parametrize("name", EDGES)
+def test_edges_of_the_theory(name):
+    plant = EDGES[name]
+    result = four_routes(plant)
+    assert result.enclosure.digits >= 20
+    assert {route.name: route.agrees for route in result.routes} == dict.fromkeys(NAMES, True)
+    for way in (enclose_by_eigenvalues, enclose_by_polynomials, enclose_by_quadrature):
+        found = way(plant)
+        held = found.status == "verified" and found.value.overlaps(result.enclosure.value)
+        assert held or (found.status == "open" and names_a_mode(found, plant))
+    if result.enclosure.by_solution.status != "verified":
+        assert result.enclosure.by_solution.status == "boundary"
+        assert names_a_mode(result.enclosure.by_solution, plant)
+
+
+def names_a_mode(found, plant):
+    """Tell whether the reason of a refusal names a mode of A, near to the boundary, as it is printed."""
+    modes = np.linalg.eigvals(plant.A - plant.N @ np.linalg.solve(plant.V, plant.C))
+    nearest = modes[np.abs(distance_to_stability(modes, plant.time)).argsort()]
+    return re.search(rf"(?<![\d.]){re.escape(format_mode(nearest[0]))}(?![\d.])", found.reason) is not None
 
 
 def test_the_example():

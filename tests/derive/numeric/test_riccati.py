@@ -185,8 +185,16 @@ def test_a_long_chain_of_integrators():
 
 
 def test_stable_modes_without_noise_are_no_boundary():
-    split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0)
+    split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0, 1.0)
     assert (len(split.modes), split.kept.shape, split.removed.shape) == (0, (2, 2), (2, 0))
+
+
+@pytest.mark.parametrize("c", [1.0, 0.7, 1 / 3, 1e-5])
+def test_a_cross_term_that_cancels_a_to_rounding(c):
+    """F = A - N V^-1 C and W - N V^-1 N' are 0 but for rounding relative to A and W."""
+    solution = solve_riccati(continuous(A=2, C=c, W=(2 / c) ** 2, V=1, N=2 / c))
+    assert (solution.status, solution.P[0, 0]) == ("strong", 0)
+    assert abs(solution.boundary_modes[0]) < 1e-15
 
 
 def test_an_impossible_plant_fails_without_a_crash():
