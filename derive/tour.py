@@ -1,9 +1,12 @@
-"""The tour: every lecture with its certificates, the findings on its sources, and one plant by every route."""
+"""The tour: every lecture with its certificates, the findings on its sources, and one plant by every route.
+
+The first page holds the lectures but the long ones, which have pages of their own beside it; links lead there and back.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -15,10 +18,24 @@ from derive.document import lecture_to_json
 from derive.files import make_folder, write
 from derive.notes.html import html
 from derive.notes.markdown import markdown
-from derive.notes.model import Block, Document, Figure, Inline, Link, Note, Para, Section, Table, document_of, join
+from derive.notes.model import (
+    Block,
+    Document,
+    Figure,
+    Inline,
+    Link,
+    Note,
+    Para,
+    Section,
+    Table,
+    document_of,
+    slug,
+    with_sources,
+)
+from derive.notes.sliders import slider_page
 from derive.numeric.plant import Plant
 from derive.replay import Report, verify_file
-from derive.theory import IN_TOUR, lecture
+from derive.theory import LECTURES, OWN_PAGE, lecture
 from derive.worked import worked_example
 
 __all__ = ["Summary", "write_certificates", "write_tour"]
@@ -33,6 +50,12 @@ ABOUT_EXAMPLE = (
 )
 
 
+ABOUT_SLIDERS = (
+    "One state and one output: move the parameters and the start, and see the error covariance and its way to the "
+    "steady state. The curves are computed by programs exported from the proved closed forms. "
+)
+
+
 @dataclass(frozen=True)
 class Chapter:
     """A lecture as the tour shows it: laid out with the verdicts of its replay from the file."""
@@ -40,6 +63,17 @@ class Chapter:
     lecture: Lecture
     report: Report
     document: Document
+    seconds: float = 0.0
+
+    @property
+    def page(self) -> str:
+        """The page that holds it, none if it is the first one."""
+        return self.lecture.key if self.lecture.key in OWN_PAGE else ""
+
+    @property
+    def count(self) -> str:
+        """How many steps are proved."""
+        return f"{self.document.proved} of {self.document.total} steps proved and replayed"
 
 
 @dataclass(frozen=True)
@@ -64,7 +98,7 @@ class Summary:
             errata = len(c.lecture.errata)
             yield (
                 f"{c.lecture.title:{width}}  {c.report.proved:3} of {c.report.total:3} steps proved, "
-                f"{errata} finding{'s' * (errata != 1)} on the source"
+                f"{errata} finding{'s' * (errata != 1)} on the source, {c.seconds:.1f} s"
             )
         proved, total = (sum(getattr(c.report, name) for c in self.chapters) for name in ("proved", "total"))
         yield f"{'All lectures':{width}}  {proved:3} of {total:3} steps proved and replayed by the kernel"
@@ -80,7 +114,7 @@ def write_tour(
     about: str = ABOUT_EXAMPLE,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Summary:
-    """Write index.html, index.md, figures and certificates into a folder.
+    """Write index.html, index.md, the pages of long lectures, sliders, figures and certificates into a folder.
 
     Args:
         folder: made unless it exists.
@@ -97,10 +131,13 @@ def write_tour(
     chapters = write_certificates(folder, progress)
     progress(f"validating {plant.name}")
     validation = validate(plant)
-    progress("writing the page")
-    page = bind(chapters, worked_example(plant, validation, about))
-    write(folder / "index.html", html(page))
-    write(folder / "index.md", markdown(page, write_figures(folder, page)))
+    progress("writing the pages")
+    write_page(folder, "index", bind(chapters, worked_example(plant, validation, about)))
+    for chapter in chapters:
+        if chapter.page:
+            write_page(folder, chapter.page, own_page(chapter))
+        if chapter.lecture.key == "scalar":
+            write(folder / "sliders.html", slider_page(chapter.report.outcomes, chapter.page or "index", "index"))
     return Summary(folder, tuple(chapters), plant.name, str(validation["verdict"]), perf_counter() - start)
 
 
@@ -108,43 +145,71 @@ def write_certificates(folder: Path, progress: Callable[[str], None] = lambda _:
     """Write each lecture with its certificates, replay the file, and lay the lecture out with those verdicts."""
     make_folder(folder / "certificates")
     chapters: list[Chapter] = []
-    for key in IN_TOUR:
+    for key in LECTURES:
         progress(f"proving {key}")
+        start = perf_counter()
         current, path = lecture(key), folder / "certificates" / f"{key}.json"
         write(path, json.dumps(lecture_to_json(current), ensure_ascii=False, indent=1) + "\n")
         (report,) = verify_file(path)
-        chapters.append(Chapter(current, report, document_of(current, report.outcomes)))
+        document = document_of(current, report.outcomes)
+        chapters.append(Chapter(current, report, document, perf_counter() - start))
     return chapters
 
 
-def write_figures(folder: Path, page: Document) -> list[str]:
+def write_page(folder: Path, name: str, page: Document) -> None:
+    """Write a page as HTML, and as Markdown with its drawings in files."""
+    write(folder / f"{name}.html", html(page))
+    write(folder / f"{name}.md", markdown(page, write_figures(folder, name, page)))
+
+
+def write_figures(folder: Path, page_name: str, page: Document) -> list[str]:
     """Write the drawings of a page as files for its Markdown; returns their names."""
     figures = [block.svg for block in page.blocks if isinstance(block, Figure)]
     make_folder(folder / "figures")
-    names = [f"figures/{i}.svg" for i in range(1, len(figures) + 1)]
+    names = [f"figures/{page_name}-{i}.svg" for i in range(1, len(figures) + 1)]
     for name, svg in zip(names, figures, strict=True):
         write(folder / name, svg)
     return names
 
 
 def bind(chapters: Sequence[Chapter], example: Sequence[Block]) -> Document:
-    """Bind the lectures, the findings on their sources and the worked example into one page."""
-    documents = [c.document for c in chapters]
-    page = join(TITLE, (SUBTITLE,), documents)
-    return replace(page, blocks=(*page.blocks, *findings(page.blocks), *example))
+    """Bind the lectures, or a line that leads to their pages, the findings and the worked example into one page."""
+    blocks = [block for c in chapters for block in (reference(c) if c.page else with_sources(c.document))]
+    if any(c.lecture.key == "scalar" for c in chapters):
+        there = Link("Open the page", "", "sliders.html")
+        blocks += [Section("The scalar filter by sliders", 1, "sliders"), Para((ABOUT_SLIDERS, there, "."))]
+    blocks += [*findings(chapters), *example]
+    proved, total = (sum(getattr(c.document, name) for c in chapters) for name in ("proved", "total"))
+    return Document(TITLE, (SUBTITLE,), tuple(blocks), proved, total)
 
 
-def findings(blocks: Sequence[Block]) -> list[Block]:
+def reference(chapter: Chapter) -> list[Block]:
+    """Return what the first page says of a lecture with a page of its own."""
+    key, errata = chapter.lecture.key, len(chapter.lecture.errata)
+    found = f", {errata} finding{'s' * (errata != 1)} on the source" if errata else ""
+    certificates = Link("certificates", "", f"certificates/{key}.json")
+    text = (Link("A page of its own", "", chapter.page), f": {chapter.count}{found}; its ", certificates, ".")
+    return [Section(chapter.lecture.title, 1, slug(key)), Para(text)]
+
+
+def own_page(chapter: Chapter) -> Document:
+    """Return the page of a long lecture, with the way back."""
+    document = chapter.document
+    sources = (" · Source: ", *document.subtitle) if any(document.subtitle) else ()
+    return replace(document, subtitle=(Link("All lectures", "", "index"), *sources))
+
+
+def findings(chapters: Iterable[Chapter]) -> list[Block]:
     """Return the table of what the sources print and what is true."""
-    notes = [block for block in blocks if isinstance(block, Note)]
+    notes = [(block, c.page) for c in chapters for block in c.document.blocks if isinstance(block, Note)]
     rows: list[tuple[Inline, ...]] = [
         (
             (DOCUMENTS.get(note.source, ("", note.source))[1], f", ({note.number})" if note.number else ""),
             (note.badge,),
             note.printed,
-            (Link("why", note.id),),
+            (Link("why", note.id, page),),
         )
-        for note in sorted(notes, key=lambda note: note.source)
+        for note, page in sorted(notes, key=lambda found: found[0].source)
     ]
     return [
         Section("Findings on the sources", 1, "findings"),

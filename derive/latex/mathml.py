@@ -72,8 +72,9 @@ def markup(box: Box) -> str:
 
 
 def _many(box: Box) -> str:
-    """Print a box where any number of elements may stand."""
-    return "".join(map(markup, box.items)) if isinstance(box, Row) else markup(box)
+    """Print a box where any number of elements may stand; brackets of a fixed size need no row of their own."""
+    items = box.items if isinstance(box, Row) else (box,)
+    return "".join(_fenced(b) if isinstance(b, Fenced) and b.left != "|" and not tall(b) else markup(b) for b in items)
 
 
 def _fenced(box: Fenced) -> str:

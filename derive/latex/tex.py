@@ -97,6 +97,6 @@ def _braced(text: str) -> str:
 
 def _fraction(top: str, bottom: str, small: bool) -> str:
     command = r"\tfrac" if small else r"\frac"
-    if len(top) == len(bottom) == 1:
+    if len(top) == len(bottom) == 1 and (top + bottom).isdigit():
         return f"{command}{top}{bottom}"
     return f"{command}{{{top}}}{{{bottom}}}"

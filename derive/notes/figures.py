@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
@@ -107,4 +108,12 @@ def _drawing(width: float, height: float) -> Iterator[tuple[Figure, Any]]:
 def _svg(figure: Figure) -> str:
     out = StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
-    return out.getvalue()[out.getvalue().index("<svg") :]
+    return _compact(out.getvalue()[out.getvalue().index("<svg") :])
+
+
+def _compact(svg: str) -> str:
+    """Drop what does not show: description, comments, white space between tags, names that nothing refers to."""
+    svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"\s*\n\s*(?=[^<\s])", " ", re.sub(r">\s+<", "><", svg))
+    used = set(re.findall(r"#([^\s\")]+)", svg))
+    return re.sub(r' id="([^"]*)"', lambda m: m[0] if m[1] in used else "", svg)

@@ -33,22 +33,48 @@ LEGEND = {
 
 def html(document: Document) -> str:
     """Return the page."""
-    body = "\n".join(map(_block, document.blocks))
+    body = "\n".join(map(block, document.blocks))
+    count = f"{document.proved} of {document.total} steps proved and replayed" if document.total else ""
     sections = [b for b in document.blocks if isinstance(b, Section)]
+    return whole_page(document.title, document.subtitle, count, body, _contents(sections))
+
+
+def whole_page(
+    title: str, subtitle: Inline, count: str, body: str, contents: str = "", *, style: str = "", script: str = ""
+) -> str:
+    """Return a self-contained page around a body, with the legend of its badges and the font that it needs."""
     page = _PAGE.format(
-        title=escape(document.title),
-        subtitle=_inline(document.subtitle),
-        count=f"{document.proved} of {document.total} steps proved and replayed" if document.total else "",
-        legend="".join(f"<li>{_badge(k)} {escape(v)}</li>" for k, v in LEGEND.items() if f"badge {k}" in body),
-        contents=_contents(sections),
+        title=escape(title),
+        subtitle=inline(subtitle),
+        count=count,
+        legend="".join(f"<li>{badge(k)} {escape(v)}</li>" for k, v in LEGEND.items() if f"badge {k}" in body),
+        contents=f'<nav aria-label="Contents">{contents}</nav>\n' if contents else "",
         body=body,
         style="{style}",
         font="{font}",
+        script="{script}",
     )
-    style = files("derive.notes").joinpath("style.css").read_text(encoding="utf-8")
     shown = unescape(re.sub(r"<[^>]*>", "", re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)))
     letters = "".join(unescape(t) for t in re.findall(r"<mi>(.)</mi>", page))
-    return page.replace("{style}", style).replace("{font}", embedded(shown, letters))
+    page = _outlines_once(page).replace("{script}", f"<script>\n{script}</script>\n" if script else "")
+    return page.replace("{style}", resource("style.css") + style).replace("{font}", embedded(shown, letters))
+
+
+def _outlines_once(page: str) -> str:
+    """Leave each named outline to the first drawing that has it; in one page the others refer to that one."""
+    seen: set[str] = set()
+
+    def first(found: re.Match[str]) -> str:
+        known = found[0] in seen
+        seen.add(found[0])
+        return "" if known else found[0]
+
+    return re.sub(r'<path id="[^>]*/>', first, page)
+
+
+def resource(name: str) -> str:
+    """Return the text of a file that lies beside the writers."""
+    return files("derive.notes").joinpath(name).read_text(encoding="utf-8")
 
 
 _PAGE = """<!DOCTYPE html>
@@ -62,11 +88,10 @@ _PAGE = """<!DOCTYPE html>
 </head>
 <body>
 <header><h1>{title}</h1><p class="subtitle">{subtitle}</p><p class="count">{count}</p><ul class="legend">{legend}</ul></header>
-<nav aria-label="Contents">{contents}</nav>
-<main>
+{contents}<main>
 {body}
 </main>
-</body>
+{script}</body>
 </html>
 """  # noqa: E501
 
@@ -87,34 +112,35 @@ def _contents(sections: Sequence[Section]) -> str:
     return f"<ol>{''.join(items)}</ol>"
 
 
-def _block(block: Block) -> str:
-    match block:
+def block(content: Block) -> str:
+    """Print a block of a page."""
+    match content:
         case Section(title, level, anchor):
             return f'<h{level + 1} id="{anchor}">{escape(title)}</h{level + 1}>'
         case Para(text):
-            return f"<p>{_inline(text)}</p>"
+            return f"<p>{inline(text)}</p>"
         case Display(rows):
             long = any(r.lhs is not None and len(plain(r.lhs)) > LONG for r in rows)
             return f'<div class="eqs{" long" if long else ""}">{"".join(map(_row, rows))}</div>'
         case Table():
-            return _table(block)
+            return _table(content)
         case Figure(svg, caption, alt):
             drawing = svg[svg.index("<svg") :].replace("<svg", f'<svg role="img" aria-label="{escape(alt)}"', 1)
-            return f"<figure>{drawing}<figcaption>{_inline(caption)}</figcaption></figure>"
+            return f"<figure>{drawing}<figcaption>{inline(caption)}</figcaption></figure>"
         case Note():
-            return _note(block)
+            return _note(content)
 
 
 def _row(row: Row) -> str:
     lhs = mathml(row.lhs) if row.lhs is not None else ""
     rhs = _breakable(beside((Op(row.relation), layout(row.rhs))))
     number = f'<a class="n" href="#{row.id}">({escape(row.number)})</a>' if row.number else ""
-    rests = [row.rule] * bool(row.rule) + [f"from {_inline(row.uses)}"] * bool(row.uses)
+    rests = [row.rule] * bool(row.rule) + [f"from {inline(row.uses)}"] * bool(row.uses)
     uses = f' <span class="uses">{", ".join(rests)}</span>' if rests else ""
     uses += f" <b>{escape(row.message)}</b>" if row.message else ""
-    reason = f"<span>{_inline(row.reason)}</span>" if row.reason else ""
+    reason = f"<span>{inline(row.reason)}</span>" if row.reason else ""
     place = "aside" if row.badge in ("definition", "hypothesis") else "why"
-    why = f'<div class="{place}">{_badge(row.badge)} {reason}{uses}</div>' if row.badge else ""
+    why = f'<div class="{place}">{badge(row.badge)} {reason}{uses}</div>' if row.badge else ""
     return f'<div class="row" id="{row.id}"><span class="l">{lhs}</span><span class="r">{rhs}</span>{number}{why}</div>'
 
 
@@ -124,26 +150,27 @@ def _breakable(box: Box) -> str:
     return "".join(math(p).replace("<math><mo>", '<math><mo form="infix">', 1) for p in pieces)
 
 
-def _badge(badge: str) -> str:
-    return f'<b class="badge {badge}">{SYMBOLS[badge]} {badge}</b>'
+def badge(word: str) -> str:
+    """Print a badge: its sign and its word, so that colour is not needed."""
+    return f'<b class="badge {word}">{SYMBOLS[word]} {word}</b>'
 
 
 def _table(table: Table) -> str:
     head = "".join(f"<th>{escape(h)}</th>" for h in table.head)
-    rows = "".join(f"<tr>{''.join(f'<td>{_inline(c)}</td>' for c in row)}</tr>" for row in table.rows)
-    caption = f'<p class="caption">{_inline(table.caption)}</p>' if table.caption else ""
+    rows = "".join(f"<tr>{''.join(f'<td>{inline(c)}</td>' for c in row)}</tr>" for row in table.rows)
+    caption = f'<p class="caption">{inline(table.caption)}</p>' if table.caption else ""
     return f'{caption}<div class="wide"><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>'
 
 
 def _note(note: Note) -> str:
     number = f", equation ({note.number})" if note.number else ""
-    title = f"{_badge(note.badge)} {escape(SOURCES.get(note.source, note.source))}{escape(number)}"
-    parts = [f'<p class="printed">As printed: {_inline(note.printed)}</p>', f"<p>{_inline(note.text)}</p>"]
+    title = f"{badge(note.badge)} {escape(SOURCES.get(note.source, note.source))}{escape(number)}"
+    parts = [f'<p class="printed">As printed: {inline(note.printed)}</p>', f"<p>{inline(note.text)}</p>"]
     parts += map(_table, note.evidence)
     if note.true is not None:
-        parts.append(f'<p class="true">{_badge("proved")} {_inline((note.true,))} {_link(note.proof)}</p>')
+        parts.append(f'<p class="true">{badge("proved")} {inline((note.true,))} {_link(note.proof)}</p>')
     elif note.proof is not None:
-        parts.append(f'<p class="true">{_badge("proved")} the statement with its hypotheses: {_link(note.proof)}</p>')
+        parts.append(f'<p class="true">{badge("proved")} the statement with its hypotheses: {_link(note.proof)}</p>')
     return f'<aside class="note {note.badge}" id="{note.id}"><h4>{title}</h4>{"".join(parts)}</aside>'
 
 
@@ -151,10 +178,11 @@ def _link(link: Link | None) -> str:
     if link is None:
         return ""
     label = escape(link.label) if isinstance(link.label, str) else mathml(link.label)
-    return f'<a href="#{link.target}">{label}</a>'
+    return f'<a href="{escape(link.address(".html"))}">{label}</a>'
 
 
-def _inline(text: Inline) -> str:
+def inline(text: Inline) -> str:
+    """Print running text."""
     out: list[str] = []
     for part in text:
         match part:

@@ -91,7 +91,7 @@ def _link(link: Link | None) -> str:
     if link is None:
         return ""
     label = _text(link.label) if isinstance(link.label, str) else _math(link.label)
-    return f"[{label}](#{link.target})"
+    return f"[{label}]({link.address('.md')})"
 
 
 def _math(formula: Term | Equation) -> str:

@@ -34,6 +34,7 @@ __all__ = [
     "join",
     "slug",
     "visible",
+    "with_sources",
 ]
 
 Badge = Literal["proved", "definition", "hypothesis", "refuted", "incomplete", "not proved", ""]
@@ -65,10 +66,19 @@ SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 
 @dataclass(frozen=True)
 class Link:
-    """A reference to a row of the page, by a label."""
+    """A reference by a label: to an anchor of this page, or of another one in the same folder.
+
+    ``page`` names the other page without its suffix, which each format adds, or any file with its suffix.
+    """
 
     label: str | Term | Equation
     target: str
+    page: str = ""
+
+    def address(self, suffix: str) -> str:
+        """Return where the link leads in a format whose pages have a suffix."""
+        page = self.page + suffix * bool(self.page and "." not in self.page)
+        return page + f"#{self.target}" * bool(self.target)
 
 
 Inline = tuple["str | Term | Equation | Link", ...]
@@ -191,13 +201,14 @@ def document_of(lecture: Lecture, outcomes: Sequence[Outcome]) -> Document:
 
 def join(title: str, subtitle: Inline, documents: Sequence[Document], extra: Sequence[Block] = ()) -> Document:
     """Bind several documents into one page, each with its sources, and further blocks at its end."""
-    blocks = tuple(b for d in documents for b in _with_sources(d))
+    blocks = tuple(b for d in documents for b in with_sources(d))
     return Document(
         title, subtitle, (*blocks, *extra), sum(d.proved for d in documents), sum(d.total for d in documents)
     )
 
 
-def _with_sources(document: Document) -> tuple[Block, ...]:
+def with_sources(document: Document) -> tuple[Block, ...]:
+    """Return the blocks of a document, its sources named under its title."""
     named = (Para(("Source: ", *document.subtitle)),) if any(document.subtitle) else ()
     return (*document.blocks[:1], *named, *document.blocks[1:])
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from derive.context import Theory
     from derive.derivation import Lecture
 
-__all__ = ["IN_TOUR", "LECTURES", "THEORIES", "lecture", "theory"]
+__all__ = ["LECTURES", "OWN_PAGE", "THEORIES", "lecture", "theory"]
 
 LECTURES = {
     "observer": "derive.theory.observer",
@@ -22,7 +22,7 @@ LECTURES = {
     "scalar": "derive.theory.scalar",
     "duality": "derive.theory.duality",
 }
-IN_TOUR = tuple(key for key in LECTURES if key != "scalar")  # its page is half as long as all the others together
+OWN_PAGE = frozenset({"kalman-bucy", "scalar", "spectrum"})  # long: in the tour, each has a page beside the first one
 THEORIES = {
     "observer-ct": "derive.theory.observer",
     "covariance-ct": "derive.theory.covariance",

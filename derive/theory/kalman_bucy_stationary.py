@@ -105,7 +105,9 @@ def declare_plant(t: Theory) -> None:
         G = t.matrix(f"G{sign}", "m", "m", Glyph("G", sub=sign), meaning="one-sided transform of R_x")
         t.complex.add(G.name)
         matrix = _point(s, sign) - A
-        t.assume(f"transform{sign}", matrix * G, "=", X, "the limit: A is stable, so the last term vanishes", case=True)
+        t.assume(
+            f"transform{sign}", matrix * G, "=", X, f"the limit at s = {sign.strip('+')}jω, for a stable A", case=True
+        )
     S_y, S_z = (
         t.matrix(f"S_{k}(ω)", "l", "l", Glyph("S", sub=k), show_args=("ω",), meaning=f"power spectrum of {k}")
         for k in "yz"
@@ -113,8 +115,8 @@ def declare_plant(t: Theory) -> None:
     Phi_x = s["Phi_x(ω)"]
     t.complex |= {S_y.name, S_z.name}
     t.define("two-sided transform", Phi_x, s["G+"] + s["G-"].T)
-    t.define("spectrum of the output", S_y, C * Phi_x * C.T + V)
-    t.define("spectrum of the true output", S_z, C * Phi_x * C.T)
+    t.define("spectrum of y", S_y, C * Phi_x * C.T + V)
+    t.define("spectrum of z", S_z, C * Phi_x * C.T)
 
 
 def _point(s: dict[str, Symbol], sign: str) -> Term:
@@ -133,9 +135,8 @@ def derive_signals(b: Builder) -> None:
     b.say("The covariance of the signal is therefore the mean of its spectrum.")
     b.given("covariance")
     chain = b.chain(s["Sigma_x"])
-    chain.to(s["mean of x(t) x(t)"], "definition", ["covariance"], number="u4", source=SOURCE)
-    chain.to(s["R_x(0)"], "the autocorrelation at lag 0", ["autocorrelation at 0"], number="u4", source=SOURCE)
-    chain.to(s["integral of Phi_x"], "the inversion at lag 0", ["inversion at 0"], number="u4", source=SOURCE)
+    chain.to(s["R_x(0)"], "the autocorrelation at lag 0", ["covariance", "autocorrelation at 0"])
+    chain.to(s["integral of Phi_x"], "the inversion at lag 0", ["inversion at 0"])
     chain.close("covariance from the spectrum", number="u4", source=SOURCE)
     b.say("The signal is white if its spectrum is constant; then")
     b.given("constant spectrum", "white", numbers=("", "u5"), source=SOURCE)
@@ -238,22 +239,18 @@ def _derive_spectra(b: Builder) -> None:
     state = plus.inv * W * minus.inv.T
     inverses = ["(jωI-A)^-1", "(-jωI-A)^-1"]
     chain = b.chain(Phi)
-    chain.to(s["G+"] + s["G-"].T, "positive and negative lags", ["two-sided transform"])
-    chain.to(plus.inv * X + X * minus.inv.T, "both limits", ["transform+", "transform-", *inverses])
+    limits = ["two-sided transform", "transform+", "transform-", *inverses]
+    chain.to(plus.inv * X + X * minus.inv.T, "both limits", limits)
     chain.to(plus.inv * (X * minus.T + plus * X) * minus.inv.T, "a common factor on each side", inverses)
     chain.to(state, "the covariance is stationary", ["stationary covariance"])
     chain.close("spectrum of the state")
     b.say("The transform of a Dirac delta is 1. Hence the outputs have the spectra")
-    b.given("spectrum of the output", "spectrum of the true output")
-    for name, number, shown, noise in (
-        ("spectrum of the output", "15", "S_y(ω)", V),
-        ("spectrum of the true output", "32", "S_z(ω)", None),
-    ):
-        terms = (C * Phi * C.T, C * state * C.T)
-        through, written = (a + noise if noise else a for a in terms)
-        chain = b.chain(s[shown])
-        chain.to(through, "the transform is linear", [name])
-        chain.to(written, "the spectrum of the state", ["spectrum of the state"], number=number, source=SOURCE)
-        if noise:
+    b.given("spectrum of y", "spectrum of z")
+    through = C * state * C.T
+    for k, number, written in (("y", "15", through + V), ("z", "32", through)):
+        chain = b.chain(s[f"S_{k}(ω)"])
+        used = [f"spectrum of {k}", "spectrum of the state"]
+        chain.to(written, "the spectrum of the state", used, number=number, source=SOURCE)
+        if k == "y":
             chain.to(s["Phi_y(ω)"], "the Popov function", ["Phi_y(ω)"])
-        chain.close(name + ", written out")
+        chain.close(f"spectrum of {k}, written out")

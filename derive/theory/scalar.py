@@ -11,11 +11,23 @@ from functools import cache
 
 from derive.context import Theory
 from derive.derivation import Lecture
-from derive.theory import scalar_continuous, scalar_discrete, scalar_integral, scalar_transient
+from derive.theory import (
+    scalar_continuous,
+    scalar_cross,
+    scalar_discrete,
+    scalar_integral,
+    scalar_limits,
+    scalar_recursion,
+    scalar_regulator,
+    scalar_transient,
+)
 from derive.theory.scalar_builder import ScalarBuilder
 
 KEY, THEORY = "scalar", "scalar"
-PARTS = (scalar_continuous, scalar_transient, scalar_discrete, scalar_integral)
+PARTS = (
+    scalar_continuous, scalar_transient, scalar_discrete, scalar_recursion, scalar_cross, scalar_regulator,
+    scalar_limits, scalar_integral,
+)  # fmt: skip
 
 
 @cache

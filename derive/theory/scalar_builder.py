@@ -112,12 +112,13 @@ class ScalarBuilder(Builder):
         using: Sequence[str],
         *,
         identities: Sequence[str] = (),
+        squares: Sequence[Term] = (),
         reason: str = "both are nonnegative and have the same square",
     ) -> Step:
         """Prove a = b by a >= b and b >= a."""
         links = f"{name}, one way", f"{name}, the other"
         for link, e in zip(links, (statement, _turned(statement)), strict=True):
-            self.sign(link, Equation(e.lhs, "≥", e.rhs), reason, using, identities=identities)
+            self.sign(link, Equation(e.lhs, "≥", e.rhs), reason, using, identities=identities, squares=squares)
         return self.linked(name, statement, "both", "two inequalities", links)
 
     def record(self, step: Step) -> Step:

@@ -52,7 +52,6 @@ def declare(t: Theory) -> None:
     p = t.scalar("p", meaning="error covariance without a division by C")
     t.define("p", p, Quotient(W, S - A))
     _declare_cases(t)
-    _declare_cross(t)
 
 
 def _declare_cases(t: Theory) -> None:
@@ -70,29 +69,12 @@ def _declare_cases(t: Theory) -> None:
     t.atom("reciprocal", A, "A < 0", "1/A")
 
 
-def _declare_cross(t: Theory) -> None:
-    A, C, W, V = (t.symbols[k] for k in "ACWV")
-    N = t.scalar("N", meaning="cross intensity of the noises")
-    t.assume("N^2 <= VW", V * W - square(N), "≥", text="the joint intensity of the noises is not negative")
-    F, q = t.scalar("F", meaning="state coefficient without the common noise"), t.scalar("q")
-    t.define("F", F, A - Quotient(N * C, V))
-    t.define("q", q, W - Quotient(square(N), V))
-    t.atom("root", square(F) + t.symbols["g"] * q, "radicand with N", "root with N")
-    S_N = t.scalar("S_N", Glyph("S", sub="N"), meaning="decay rate with common noise")
-    t.define("S_N", S_N, Root(square(F) + t.symbols["g"] * q))
-    P_N = t.scalar("P_N", Glyph("P", sub="N"), meaning="error covariance with common noise")
-    t.define("P_N", P_N, Quotient(V * (F + S_N), square(C)))
-    K_N = t.scalar("K_N", Glyph("K", sub="N"), meaning="gain with common noise")
-    t.define("K_N", K_N, Quotient(P_N * C + N, V))
-
-
 def derive(b: ScalarBuilder) -> None:
     """Derive the roots and what they mean."""
     _derive_roots(b)
     _derive_stability(b)
     _derive_cases(b)
     _derive_limits(b)
-    _derive_cross(b)
 
 
 def _derive_roots(b: ScalarBuilder) -> None:
@@ -210,22 +192,6 @@ def _derive_limits(b: ScalarBuilder) -> None:
         "limit of a perfect sensor", Equation(Limit(form, V, ZERO), "=", ZERO),
         "sums, products and roots are continuous",
     )  # fmt: skip
-
-
-def _derive_cross(b: ScalarBuilder) -> None:
-    s = b.theory.symbols
-    A, C, W, V, N, F, q, g, S, P, K = (s[k] for k in ("A", "C", "W", "V", "N", "F", "q", "g", "S_N", "P_N", "K_N"))
-    b.heading("Noises that have a part in common")
-    b.given("N^2 <= VW", "F", "q")
-    b.sign("q >= 0", Equation(q, "≥", ZERO), "a joint intensity", ["N^2 <= VW", "1/V > 0"])
-    b.sign("radicand with N", Equation(square(F) + g * q, "≥", ZERO), "as before", ["g >= 0", "q >= 0"], squares=[F])
-    b.given("S_N", "P_N", "K_N")
-    b.state(
-        "Riccati equation with common noise",
-        Equation(2 * A * P + W - Quotient(square(P * C + N), V), "=", ZERO),
-        "complete the square: F and q take the place of A and W",
-    )
-    b.state("closed loop with common noise", Equation(A - K * C, "=", -S), "insert the gain")
 
 
 __all__ = ["Symbol", "declare", "derive", "riccati", "square"]

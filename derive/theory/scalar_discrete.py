@@ -1,4 +1,4 @@
-"""The scalar Riccati recursion: steady roots, predictor and filter, degenerate cases, and every step in closed form."""
+"""The scalar Riccati equation in discrete time: both roots, predictor and filter, and the degenerate cases."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def linear(A: Term, C: Term, Q: Term, R: Term) -> Term:
 
 
 def declare(t: Theory) -> None:
-    """Declare covariances, roots, and the recursion."""
+    """Declare covariances and roots."""
     Q, R = (
         t.scalar("Q", meaning="covariance of the process noise"),
         t.scalar("R", meaning="covariance of the sensor noise"),
@@ -32,21 +32,19 @@ def declare(t: Theory) -> None:
     t.assume("R > 0", R, ">", text="the output is noisy")
     t.assume("Q >= 0", Q, "≥", text="a covariance is not negative")
     t.atom("reciprocal", R, "R > 0", "1/R")
-    _declare_roots(t, Q, R, "", "")
+    declare_roots(t, t.symbols["A"], t.symbols["C"], Q, R)
     _declare_cases(t)
-    _declare_cross(t)
-    _declare_recursion(t)
 
 
-def _declare_roots(t: Theory, Q: Term, R: Term, tail: str, sub: str, A: Term | None = None) -> None:
-    A, C = A or t.symbols["A"], t.symbols["C"]
+def declare_roots(t: Theory, A: Term, C: Term, Q: Term, R: Term, tail: str = "", sub: str = "", letter: str = "P") -> None:
+    """Declare b, T and both roots of a discrete Riccati equation."""
     beta, T = t.scalar("b" + tail, Glyph("b", sub=sub)), t.scalar("T" + tail, Glyph("T", sub=sub))
     t.define("b" + tail, beta, linear(A, C, Q, R))
     t.atom("root", square(beta) + 4 * square(C) * Q * R, "discrete radicand" + tail, "discrete root" + tail)
     t.define("T" + tail, T, Root(square(beta) + 4 * square(C) * Q * R))
     for name, sign, sup in (("M", T, ""), ("M-", -T, "-")):
         M = t.scalar(
-            name + tail, Glyph("P", sub=sub, sup="d" + sup), meaning="steady covariance of the predicted state"
+            name + tail, Glyph(letter, sub=sub, sup="d" + sup), meaning="steady covariance of the predicted state"
         )
         t.define(name + tail, M, Quotient(beta + sign, 2 * square(C)))
     upper = t.symbols["M" + tail]
@@ -73,65 +71,17 @@ def _declare_cases(t: Theory) -> None:
     t.atom("part", square(A) - ONE, name="max(0,A^2-1)")
 
 
-def _declare_cross(t: Theory) -> None:
-    A, C, Q, R = (t.symbols[k] for k in ("A", "C", "Q", "R"))
-    N = t.scalar("S_d", Glyph("S", sup="d"), meaning="cross covariance of the noises")
-    t.assume("S^2 <= QR", Q * R - square(N), "≥", text="the joint covariance of the noises is not negative")
-    F, q = t.scalar("F_d", Glyph("F", sup="d")), t.scalar("q_d", Glyph("q", sup="d"))
-    t.define("F_d", F, A - Quotient(N * C, R))
-    t.define("q_d", q, Q - Quotient(square(N), R))
-    _declare_roots(t, q, R, "_S", "S", F)
-
-
-def _declare_recursion(t: Theory) -> None:
-    A, C, Q, R, T = (t.symbols[k] for k in ("A", "C", "Q", "R", "T"))
-    sigma = t.scalar("σ", Glyph("σ", sub="k"), meaning="1 + ρ + ... + ρ^{k-1}")
-    after = t.scalar("σ'", Glyph("σ", sub="k+1"), meaning="the next of these sums")
-    lam, rho = t.scalar("λ", meaning="steady innovation covariance"), t.scalar("ρ", meaning="decay a step")
-    t.define("λ", lam, Number(Fraction(1, 2)) * (square(A) * R + square(C) * Q + R + T))
-    t.atom("reciprocal", lam, "λ > 0", "1/λ")
-    t.define("ρ", rho, Quotient(square(A) * square(R), square(lam)))
-    t.define("σ'", after, ONE + rho * sigma)
-    for name, s in (("", sigma), ("'", after)):
-        over, under = numerator(t, s), denominator(t, s)
-        if not name:
-            t.assume("N_k >= 0", over, "≥", text="the induction hypothesis", case=True)
-            t.assume("D_k > 0", under, ">", text="the induction hypothesis", case=True)
-        sub = "k+1" if name else "k"
-        n, d = (t.scalar(letter + sub, Glyph(letter, sub=sub)) for letter in "nd")
-        t.define(f"n{name}", n, over)
-        t.define(f"d{name}", d, under)
-        t.atom("reciprocal", d, f"d{name} > 0", f"1/d{name}")
-        P = t.scalar(f"P_k{name}", Glyph("P", sub=sub), meaning="covariance of the predicted state")
-        t.define(f"P_k{name}", P, Quotient(n, d))
-    t.atom("reciprocal", square(C) * t.symbols["P_k"] + R, "C^2 P_k + R > 0", "1/(C^2 P_k+R)")
-    t.assume("σ = 0", sigma, "=", text="the empty sum", case=True)
-
-
-def numerator(t: Theory, sigma: Term) -> Term:
-    """Return the numerator of the covariance after the steps that sigma counts."""
-    A, C, Q, R, lam, start = (t.symbols[k] for k in ("A", "C", "Q", "R", "λ", "P0"))
-    return start * (lam + (square(A) * R + square(C) * Q - lam) * sigma) + Q * R * sigma
-
-
-def denominator(t: Theory, sigma: Term) -> Term:
-    """Return the denominator of the covariance after the steps that sigma counts."""
-    C, R, lam, start = (t.symbols[k] for k in ("C", "R", "λ", "P0"))
-    return lam + (square(C) * start + R - lam) * sigma
-
-
 def derive(b: ScalarBuilder) -> None:
-    """Derive the steady roots, their cases, and the recursion."""
+    """Derive the steady roots and their cases."""
     _derive_roots(b)
     _derive_stability(b)
     _derive_cases(b)
-    _derive_cross(b)
-    _derive_recursion(b)
 
 
-def _signs(b: ScalarBuilder, Q: Term, q_fact: str, tail: str) -> None:
+def derive_signs(b: ScalarBuilder, C: Term, Q: Term, q_fact: str, tail: str = "") -> None:
+    """Derive that the radicand, T ± b, the upper root and its innovation covariance have the signs they need."""
     s = b.theory.symbols
-    C, R, beta, T, M = s["C"], s["R"], s["b" + tail], s["T" + tail], s["M" + tail]
+    R, beta, T, M = s["R"], s["b" + tail], s["T" + tail], s["M" + tail]
     b.sign(
         "discrete radicand" + tail, Equation(square(beta) + 4 * square(C) * Q * R, "≥", ZERO),
         "squares and products of nonnegative numbers", [q_fact, "R > 0"], squares=[beta, C],
@@ -155,7 +105,7 @@ def _derive_roots(b: ScalarBuilder) -> None:
     A, C, Q, R, M = (s[k] for k in ("A", "C", "Q", "R", "M"))
     b.heading("Discrete time: the steady covariance")
     b.given("R > 0", "Q >= 0", "b")
-    _signs(b, Q, "Q >= 0", "")
+    derive_signs(b, C, Q, "Q >= 0")
     b.given("T", "M")
     b.state("discrete Riccati equation", Equation(M, "=", recursion(A, C, Q, R, M)), "the upper root")
     b.say("The other root solves the same equation, multiplied out:")
@@ -282,109 +232,3 @@ def _derive_cases(b: ScalarBuilder) -> None:
         identities=["square of the double root on the circle"],
     )
     b.state("filtered double root", Equation(s["M+"], "=", ZERO), "insert it", ["double root on the circle"])
-
-
-def _derive_cross(b: ScalarBuilder) -> None:
-    s = b.theory.symbols
-    A, C, Q, R, N, F, q, M = (s[k] for k in ("A", "C", "Q", "R", "S_d", "F_d", "q_d", "M_S"))
-    b.heading("Noises that have a part in common, in discrete time")
-    b.given("S^2 <= QR", "F_d", "q_d")
-    b.sign("1/R > 0", Equation(Quotient(ONE, R), ">", ZERO), RECIPROCAL, ["R > 0"])
-    b.sign("q_d >= 0", Equation(q, "≥", ZERO), "a joint covariance", ["S^2 <= QR", "1/R > 0"])
-    b.given("b_S")
-    _signs(b, q, "q_d >= 0", "_S")
-    b.given("T_S", "M_S")
-    sigma = square(C) * M + R
-    b.state(
-        "discrete Riccati equation with common noise",
-        Equation(M, "=", square(A) * M + Q - Quotient(square(A * M * C + N), sigma)),
-        "complete the square: F and q take the place of A and Q",
-    )
-    gain = Quotient(A * M * C + N, sigma)
-    b.state(
-        "discrete closed loop with common noise", Equation(A - gain * C, "=", Quotient(F * R, sigma)), "insert the gain"
-    )
-
-
-def _derive_recursion(b: ScalarBuilder) -> None:
-    s = b.theory.symbols
-    A, C, Q, R, T, start, sigma, after, lam, rho, P, M = (
-        s[k] for k in ("A", "C", "Q", "R", "T", "P0", "σ", "σ'", "λ", "ρ", "P_k", "M")
-    )
-    b.heading("Every step of the recursion")
-    b.say(
-        "The recursion ",
-        Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)),
-        " is a Moebius map; its powers are written with",
-    )
-    b.sign("λ > 0", Equation(lam, ">", ZERO), "R is positive", ["T >= 0", "R > 0", "Q >= 0"], squares=[A, C])
-    b.given("λ", "ρ")
-    b.say("and the sums ", Equation(sigma, "=", ONE + rho), " + ... of its first powers, which obey")
-    b.given("σ'")
-    b.state(
-        "characteristic equation",
-        Equation(lam * (ONE + rho), "=", square(A) * R + square(C) * Q + R),
-        "T^2 = (trace)^2 - 4 det",
-    )
-    b.state(
-        "the power as a sum",
-        Equation(ONE - (ONE - rho) * after, "=", rho * (ONE - (ONE - rho) * sigma)),
-        "so it is ρ^k, by induction",
-    )
-    n, d, n_next, d_next = (s[k] for k in ("nk", "dk", "nk+1", "dk+1"))
-    b.say("The claim is")
-    b.given("n", "d", "N_k >= 0", "D_k > 0")
-    b.sign("d > 0", Equation(d, ">", ZERO), "the induction hypothesis", ["D_k > 0"])
-    b.sign("n >= 0", Equation(n, "≥", ZERO), "the induction hypothesis", ["N_k >= 0"])
-    b.given("P_k")
-    b.say("It holds at the start,")
-    b.state("induction start", Equation(P, "=", start), "the empty sum", ["σ = 0"])
-    b.sign(
-        "numerator at the start", Equation(n, "≥", ZERO), "the empty sum", ["P0 >= 0", "λ > 0"], identities=["σ = 0"]
-    )
-    b.sign("denominator at the start", Equation(d, ">", ZERO), "the empty sum", ["λ > 0"], identities=["σ = 0"])
-    b.say("and from each step to the next:")
-    b.given("n'", "d'")
-    b.sign("1/λ > 0", Equation(Quotient(ONE, lam), ">", ZERO), RECIPROCAL, ["λ > 0"])
-    upper, lower = (square(A) * R + square(C) * Q) * n + Q * R * d, square(C) * n + R * d
-    b.state("next denominator", Equation(lam * d_next, "=", lower), "the lower row of the Moebius matrix")
-    b.state("next numerator", Equation(lam * n_next, "=", upper), "the upper row")
-    b.sign(
-        "lower row",
-        Equation(lower, ">", ZERO),
-        "as the induction hypothesis says",
-        ["n >= 0", "d > 0", "R > 0"],
-        squares=[C],
-    )
-    b.sign("upper row", Equation(upper, "≥", ZERO), "as the induction hypothesis says",
-           ["n >= 0", "d > 0", "R > 0", "Q >= 0"], squares=[A, C])  # fmt: skip
-    for name, x, row in (("d' > 0", d_next, "lower row"), ("n' >= 0", n_next, "upper row")):
-        b.sign(
-            name, Equation(x, ">" if row == "lower row" else "≥", ZERO), "divide by λ", [row, "1/λ > 0"],
-            identities=["next denominator" if row == "lower row" else "next numerator", "1/λ"], alone=True,
-        )  # fmt: skip
-    b.given("P_k'")
-    b.sign("1/d > 0", Equation(Quotient(ONE, d), ">", ZERO), RECIPROCAL, ["d > 0"], identities=["1/d"], alone=True)
-    b.sign(
-        "P_k >= 0", Equation(P, "≥", ZERO), "a quotient of such", ["n >= 0", "1/d > 0"], identities=["P_k"], alone=True
-    )
-    b.sign("C^2 P_k + R > 0", Equation(square(C) * P + R, ">", ZERO), "an innovation covariance", ["P_k >= 0", "R > 0"],
-           squares=[C], alone=True)  # fmt: skip
-    b.state(
-        "induction step", Equation(s["P_k'"], "=", recursion(A, C, Q, R, P)), "both rows",
-        ["next numerator", "next denominator", "P_k", "P_k'"],
-    )  # fmt: skip
-    b.say("Each step multiplies the distance to the steady state by the decay, up to a bounded denominator:")
-    b.state("steady innovation covariance", Equation(lam, "=", square(C) * M + R), "insert the root")
-    over, below = Quotient(s["b"] + T, 2 * square(C)), Quotient(2 * Q * R, T - s["b"])
-    b.state(
-        "filtered covariance in closed form", Equation(s["M+"], "=", Quotient(over * R, lam)), "the same denominator"
-    )
-    b.state(
-        "filtered covariance without a division by C", Equation(s["M+"], "=", Quotient(below * R, lam)),
-        "the other form of the root", ["filtered covariance in closed form", "same discrete covariance"],
-    )  # fmt: skip
-    b.state(
-        "distance in discrete time",
-        Equation(P - M, "=", Quotient((start - M) * lam * (ONE - (ONE - rho) * sigma), d)), "common denominator",
-    )  # fmt: skip

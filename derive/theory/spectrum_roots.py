@@ -5,7 +5,7 @@ One root is integrated with an antiderivative and its limits; a polynomial is th
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -13,7 +13,7 @@ from derive.context import Theory
 from derive.derivation import Step
 from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Power, Quotient, Rate
 from derive.spectral import At, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
-from derive.terms import Equation, Glyph, Neg, Product, Symbol, Term
+from derive.terms import Equation, Glyph, Neg, Product, Sum, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 
@@ -99,15 +99,25 @@ def declare_family(t: Theory, root: Symbol, *signs: int) -> None:
         t.atom("spectral", Total(body, index, count), name=f"sum {key} {name}")
 
 
-def declare_integrals(t: Theory, name: str, function: Term, zeros: Symbol, poles: Symbol) -> None:
+def declare_integrals(t: Theory, name: str, log: Term, zeros: Symbol, poles: Symbol) -> None:
     """Declare the logarithm of a quotient on the axis and its integral over half of the axis."""
     w, i, m = t.symbols["ω"], t.symbols["i"], t.symbols["m"]
-    t.atom("spectral", Log(Modulus(At(function, t.symbols["s"], axis(t)))), name=f"ln|{name}(jω)|")
-    t.atom("improper", Log(Modulus(At(function, t.symbols["s"], axis(t)))), name=f"integral of ln|{name}|")
+    t.atom("spectral", log, name=f"ln {name}")
+    t.atom("improper", log, name=f"integral of ln {name}")
     pair = _pair(w, zeros, poles)
     t.atom("improper", Total(pair, i, m), name=f"integral of the roots of {name}")
-    t.atom("improper", QUARTER * Total(pair, i, m), name=f"quarter of the integral of the roots of {name}")
+    t.atom("improper", weight(log) * Total(pair, i, m), name=f"integral of the weighted roots of {name}")
     t.atom("improper", pair, name=f"integral of one root of {name}")
+
+
+def on_axis(t: Theory, function: Term) -> Log:
+    """Return ln|f(jω)|."""
+    return Log(Modulus(At(function, t.symbols["s"], axis(t))))
+
+
+def weight(log: Term) -> Fraction:
+    """Return the weight of the squared distances of both conjugates: 1/4 in ln|f|, 1/2 in ln f for f = |g|^2."""
+    return QUARTER if isinstance(log, Log) and isinstance(log.body, Modulus) else HALF
 
 
 def _pair(w: Term, zeros: Symbol, poles: Symbol) -> Term:
@@ -129,7 +139,7 @@ def _declare_function(t: Theory) -> None:
     t.define("q", q, Roots(s, pole, i, m), "monic of the same order, with the poles")
     t.define("f", f, Quotient(p, q))
     t.assume("f tends to 1", Limit(f, s, Infinity()), "=", ONE, text="both polynomials are monic")
-    declare_integrals(t, "f", f, zero, pole)
+    declare_integrals(t, "f", on_axis(t, f), zero, pole)
     t.atom("spectral", Log(Modulus(At(f, s, s))), name="ln|f(s)|")
     t.assume("poles are stable", Neg(RealPart(pole)), ">", text="all poles of f are stable", case=True)
 
@@ -259,22 +269,26 @@ def derive_root(b: ScalarBuilder, root: Symbol) -> None:
     b.linked(f"root lemma of {root.name}", Equation(half, "=", 2 * PI * Abs(re)), "instance", "for each root", ["root lemma"])  # fmt: skip
 
 
-def derive_integral(b: ScalarBuilder, name: str, function: Term, zeros: Symbol, poles: Symbol, by_roots: str) -> Step:
-    """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from the step ``by_roots``."""
-    t = b.theory
-    w, s, i, m = (t.symbols[k] for k in ("ω", "s", "i", "m"))
-    log = Log(Modulus(At(function, s, axis(t))))
+def scaled(number: Fraction, term: Term) -> Term:
+    """Return number * term, the term itself for 1."""
+    return term if number == 1 else number * term
+
+
+def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles: Symbol, by_roots: str) -> Step:
+    """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from the step ``by_roots``; twice that for f = |g|^2."""
+    t, part = b.theory, weight(log)
+    w, i, m = (t.symbols[k] for k in ("ω", "i", "m"))
     sums = {(r.name, sign): Total(Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))), i, m)
             for r in (zeros, poles) for sign, k in SIDES}  # fmt: skip
-    one = HALF * sums[zeros.name, "-"] - HALF * sums[poles.name, "-"]
-    b.linked(f"ln|{name}|", Equation(log, "=", one), "modulus", "the modulus of a product", [by_roots])
+    one = scaled(2 * part, sums[zeros.name, "-"]) - scaled(2 * part, sums[poles.name, "-"])
+    b.linked(f"ln {name} on the axis", Equation(log, "=", one), "modulus", "the modulus of a product", [by_roots])
     for root in (zeros, poles):
         if f"conjugates of {root.name}" not in b.steps:
             pair = Equation(sums[root.name, "-"], "=", sums[root.name, "+"])
             b.linked(f"conjugates of {root.name}", pair, "conjugate", "complex roots come in conjugate pairs", [])
     pair, conjugates = _pair(w, zeros, poles), [f"conjugates of {r.name}" for r in (zeros, poles)]
     even = Total(pair, i, m)
-    b.state(f"ln|{name}|, even", Equation(log, "=", QUARTER * even), "pairs of conjugates", [f"ln|{name}|", *conjugates])
+    b.state(f"ln {name}, even", Equation(log, "=", part * even), "pairs of conjugates", [f"ln {name} on the axis", *conjugates])
     value = 2 * PI * Abs(RealPart(zeros)) - 2 * PI * Abs(RealPart(poles))
     half: Callable[[Term], Definite] = lambda body: Definite(body, w, ZERO, Infinity())  # noqa: E731
     b.linked(
@@ -282,12 +296,12 @@ def derive_integral(b: ScalarBuilder, name: str, function: Term, zeros: Symbol, 
         [f"root lemma of {r.name}" for r in (zeros, poles)],
     )  # fmt: skip
     b.linked(f"roots of {name}", Equation(half(even), "=", Total(value, i, m)), "sum over", "summed over the roots", [f"one root of {name}"])  # fmt: skip
-    b.linked(f"quarter of the roots of {name}", Equation(half(QUARTER * even), "=", QUARTER * Total(value, i, m)), "linear", "times a number", [f"roots of {name}"])  # fmt: skip
-    b.linked(f"half of the axis of {name}", Equation(half(log), "=", half(QUARTER * even)), "same argument", "the same integrand", [f"ln|{name}|, even"])  # fmt: skip
+    b.linked(f"weighted roots of {name}", Equation(half(part * even), "=", part * Total(value, i, m)), "linear", "times a number", [f"roots of {name}"])  # fmt: skip
+    b.linked(f"half of the axis of {name}", Equation(half(log), "=", half(part * even)), "same argument", "the same integrand", [f"ln {name}, even"])  # fmt: skip
     return b.state(
         f"log-integral of {name}",
-        Equation(whole(b, log), "=", HALF * Total(Abs(RealPart(zeros)), i, m) - HALF * Total(Abs(RealPart(poles)), i, m)),
-        "the integrand is even", [f"half of the axis of {name}", f"quarter of the roots of {name}"],
+        Equation(whole(b, log), "=", scaled(2 * part, Total(Abs(RealPart(zeros)), i, m)) - scaled(2 * part, Total(Abs(RealPart(poles)), i, m))),
+        "the integrand is even", [f"half of the axis of {name}", f"weighted roots of {name}"],
     )  # fmt: skip
 
 
@@ -307,22 +321,17 @@ def _derive_function(b: ScalarBuilder) -> None:
     for root in (zero, pole):
         derive_root(b, root)
         derive_family(b, root, reals=1)
-    derive_integral(b, "f", f, zero, pole, "f by its roots")
+    derive_integral(b, "f", on_axis(t, f), zero, pole, "f by its roots")
     b.say("Along the reals the same modulus gives the first term of the formula:")
-    log, sums = Log(Modulus(At(f, s, s))), [_along(b, r, 1) for r in (zero, pole)]
-    b.linked("ln|f| along the reals", Equation(log, "=", HALF * sums[0] - HALF * sums[1]), "modulus", "the modulus of a product", ["f by its roots"])  # fmt: skip
-    decay = [Total(s * (Log(square(s - RealPart(r)) + square(ImaginaryPart(r))) - Log(square(s))), i, m) for r in (zero, pole)]  # fmt: skip
-    b.state("s ln|f|", Equation(HALF * s * log, "=", QUARTER * decay[0] - QUARTER * decay[1]), "the terms with ln s² cancel", ["ln|f| along the reals"])  # fmt: skip
     limit = HALF * Total(RealPart(pole), i, m) - HALF * Total(RealPart(zero), i, m)
-    first = Limit(HALF * s * log, s, Infinity())
-    b.linked("first term", Equation(first, "=", limit), "same argument", "root by root", ["s ln|f|"])
+    first = derive_first_term(b, "f", f, [(zero, 1)], [(pole, 1)], limit, "f by its roots")
     b.say("Proposition 1, for stable poles; zeros on the imaginary axis are allowed:")
     b.given("poles are stable")
     stable = Equation(Abs(RealPart(pole)), "=", Neg(RealPart(pole)))
     b.equal("stable poles", stable, [f"|Re {pole.name}| ≥ 0", "poles are stable"], reason="the real part is negative")
     b.linked("stable poles, summed", Equation(Total(stable.lhs, i, m), "=", Total(stable.rhs, i, m)), "sum over", "summed over the poles", ["stable poles"])  # fmt: skip
-    integral, zeros, poles = whole(b, Log(Modulus(At(f, s, axis(t))))), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)  # fmt: skip
-    known = ["log-integral of f", "first term", "modulus of φ, summed"]
+    integral, zeros, poles = whole(b, on_axis(t, f)), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)  # fmt: skip
+    known = ["log-integral of f", "first term of f", "modulus of φ, summed"]
     b.state(
         "proposition 1", Equation(integral, "=", first + zeros), "|x| = 2 max(0, x) - x, summed over the zeros",
         [*known, "stable poles, summed"], number="7", source=SOURCE,
@@ -340,3 +349,27 @@ def _along(b: ScalarBuilder, root: Symbol, sign: int) -> Total:
     t, re = b.theory, RealPart(root)
     s, i, m = (t.symbols[k] for k in ("s", "i", "m"))
     return Total(Log(square(_shifted(s, re, -sign)) + square(ImaginaryPart(root))), i, m)
+
+
+def derive_first_term(
+    b: ScalarBuilder,
+    name: str,
+    function: Term,
+    zeros: Sequence[tuple[Symbol, int]],
+    poles: Sequence[tuple[Symbol, int]],
+    limit: Term,
+    by_roots: str,
+) -> Limit:
+    """Derive lim s ln|f(s)|/2 as s grows along the reals, root by root; the roots come with the sign of s."""
+    t = b.theory
+    s, i, m = (t.symbols[k] for k in ("s", "i", "m"))
+    log = Log(Modulus(At(function, s, s)))
+    signed = [*((r, k, 1) for r, k in zeros), *((r, k, -1) for r, k in poles)]
+    logs = [Neg(HALF * _along(b, r, k)) if side < 0 else HALF * _along(b, r, k) for r, k, side in signed]
+    b.linked(f"ln|{name}| along the reals", Equation(log, "=", Sum(tuple(logs))), "modulus", "the modulus of a product", [by_roots])  # fmt: skip
+    decay = [QUARTER * Total(s * (_along(b, r, k).body - Log(square(s))), i, m) for r, k, _ in signed]
+    decays = Sum(tuple(Neg(d) if side < 0 else d for d, (_, _, side) in zip(decay, signed, strict=True)))
+    b.state(f"s ln|{name}|", Equation(HALF * s * log, "=", decays), "the terms with ln s² cancel", [f"ln|{name}| along the reals"])  # fmt: skip
+    first = Limit(HALF * s * log, s, Infinity())
+    b.linked(f"first term of {name}", Equation(first, "=", limit), "same argument", "root by root", [f"s ln|{name}|"])
+    return first
