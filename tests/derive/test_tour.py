@@ -1,4 +1,4 @@
-"""The tour: what it writes, that its badges come from the replay, and that nothing leaves the page."""
+"""The tour: what it writes, that its badges come from the replay, and that nothing leaves its folder."""
 
 import json
 import re
@@ -10,11 +10,14 @@ import pytest
 from derive import tour, worked
 from derive.errors import InputError
 from derive.latex import plain
-from derive.notes.model import Display, Figure, Para, Section, Table
+from derive.notes.model import Display, Figure, Link, Note, Para, Section, Table
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.replay import verify_file
-from derive.theory import IN_TOUR, lecture
+from derive.theory import LECTURES, OWN_PAGE, lecture
 from lmi.validation import validate
+
+APART = [key for key in LECTURES if key in OWN_PAGE]
+LIMIT = 600_000  # bytes of a page
 
 
 @pytest.fixture(scope="module")
@@ -49,46 +52,101 @@ class Page(HTMLParser):
 
 def test_it_writes_what_the_contract_says(written):
     folder, summary, stages = written
-    assert sorted(p.name for p in (folder / "certificates").iterdir()) == sorted(f"{key}.json" for key in IN_TOUR)
-    names = sorted(p.name for p in folder.iterdir())
-    assert names == ["certificates", "figures", "index.html", "index.md"]
+    assert sorted(p.name for p in (folder / "certificates").iterdir()) == sorted(f"{key}.json" for key in LECTURES)
+    pages = [f"{key}.{suffix}" for key in ("index", *APART) for suffix in ("html", "md")]
+    assert sorted(p.name for p in folder.iterdir()) == sorted(["certificates", "figures", "sliders.html", *pages])
     assert summary.expected
-    assert len(stages) == len(IN_TOUR) + 2
+    assert len(stages) == len(LECTURES) + 2
 
 
 def test_the_certificates_replay(written):
     folder, *_ = written
-    for key in IN_TOUR:
+    for key in LECTURES:
         (report,) = verify_file(folder / "certificates" / f"{key}.json")
         assert report.accepted
         assert report.total == len(lecture(key).steps)
 
 
-def test_the_page_is_self_contained(written):
+@pytest.mark.parametrize("name", ["index", *APART, "sliders"])
+def test_a_page_is_self_contained_and_small(written, name):
+    folder, *_ = written
+    text = (folder / f"{name}.html").read_text(encoding="utf-8")
+    tags = Page(text).tags
+    assert not {"link", "iframe", "object", "embed", "img", "base"} & set(tags)
+    assert tags.count("script") == (name == "sliders")
+    assert not re.search(r"url\((?!data:|#|\"?#)|@import", text)
+    assert len(text.encode()) < LIMIT
+    assert tags.count("math") > (20 if name == "sliders" else 300)
+
+
+def test_every_link_of_every_page_leads_somewhere(written):
+    folder, *_ = written
+    pages = {p.name: Page(p.read_text(encoding="utf-8")) for p in folder.glob("*.html")}
+    for name, page in pages.items():
+        for address in page.addresses:
+            file, _, anchor = address.partition("#")
+            assert (folder / (file or name)).is_file(), address
+            assert not anchor or anchor in pages[file or name].anchors, address
+    for key in APART:
+        assert f"{key}.html" in pages["index.html"].addresses
+        assert "index.html" in pages[f"{key}.html"].addresses
+    assert "sliders.html" in pages["index.html"].addresses
+
+
+def test_links_of_markdown_lead_to_markdown(written):
+    folder, *_ = written
+    anchors = {p.name: set(re.findall(r'<a id="([^"]+)">', p.read_text(encoding="utf-8"))) for p in folder.glob("*.md")}
+    for name in anchors:
+        text = re.sub(r"\$`.*?`\$", "", (folder / name).read_text(encoding="utf-8"))
+        for file, anchor in re.findall(r"\]\(([^()#\s]*)#?([^()\s]*)\)", text):
+            assert (folder / (file or name)).is_file(), (name, file)
+            assert not anchor or anchor in anchors[file or name], (name, file, anchor)
+        assert name == "index.md" or "](index.md)" in text
+
+
+def test_the_same_outline_is_drawn_from_one_definition(written):
+    """Drawings of one page share the outlines of letters; an anchor stands once."""
     folder, *_ = written
     text = (folder / "index.html").read_text(encoding="utf-8")
-    page = Page(text)
-    assert not {"script", "link", "iframe", "object", "embed", "img", "base"} & set(page.tags)
-    assert {a.partition("#")[0] for a in page.addresses} == {""}
-    assert {a[1:] for a in page.addresses} <= page.anchors
-    assert not re.search(r"url\((?!data:|#|\"?#)|@import", text)
-    without_plots = re.sub(r"<figure>.*?</figure>", "", text, flags=re.DOTALL)
-    assert len(without_plots.encode()) < 800 * 1024
-    assert page.tags.count("math") > 500
+    names = re.findall(r' id="([^"]+)"', text)
+    assert len(names) == len(set(names))
+    assert set(re.findall(r'xlink:href="#([^"]+)"', text)) <= set(names)
+    assert text.count("<use ") > 100
 
 
 def test_lectures_findings_and_example_are_on_both_pages(written):
     folder, *_ = written
-    for name in ("index.html", "index.md"):
-        text = (folder / name).read_text(encoding="utf-8")
-        titles = (*(lecture(key).title for key in IN_TOUR), "Findings on the", "Worked example")
+    for suffix in ("html", "md"):
+        text = (folder / f"index.{suffix}").read_text(encoding="utf-8")
+        titles = (*(lecture(key).title for key in LECTURES), "Findings on the", "Worked example")
         places = [re.search(rf"(<h2[^>]*>|^## ){re.escape(t)}", text, re.MULTILINE).start() for t in titles]
         assert places == sorted(places)
         assert example_plant().source.split(",")[0] in text
         for route in ("riccati", "lmi-primal", "lmi-dual", "lmi-h2", "nlp", "integral"):
             assert route in text
-    for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
-        assert (folder / target).read_text(encoding="utf-8").startswith("<svg")
+        for target in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text):
+            assert (folder / target).read_text(encoding="utf-8").startswith("<svg")
+        for key in APART:
+            count = f"{len(lecture(key).steps)} of {len(lecture(key).steps)} steps proved and replayed"
+            assert count in text
+            assert count in (folder / f"{key}.{suffix}").read_text(encoding="utf-8")
+
+
+def test_a_finding_leads_to_the_page_that_explains_it(tmp_path, monkeypatch):
+    """A lecture that moves to a page of its own takes its findings with it; the table stays whole and finds them."""
+    monkeypatch.setattr(tour, "OWN_PAGE", {"luenberger"})
+    monkeypatch.setattr(tour, "LECTURES", {key: LECTURES[key] for key in ("observer", "luenberger")})
+    chapters = tour.write_certificates(tmp_path)
+    page = tour.bind(chapters, [])
+    (table,) = [b for b in page.blocks if isinstance(b, Table) and b.head[0] == "source"]
+    links = [cell for row in table.rows for cell in row[-1] if isinstance(cell, Link)]
+    assert len(links) == sum(len(lecture(key).errata) for key in ("observer", "luenberger"))
+    own = tour.own_page(chapters[1])
+    for place, source in (("", page), ("luenberger", own)):
+        notes = {block.id for block in source.blocks if isinstance(block, Note)}
+        assert {link.target for link in links if link.page == place} == notes != set()
+    assert {link.address(".html").partition("#")[0] for link in links} == {"", "luenberger.html"}
+    assert (page.proved, page.total) == tuple(sum(getattr(c.report, k) for c in chapters) for k in ("proved", "total"))
 
 
 def test_the_same_input_gives_the_same_files(written, validation, tmp_path):
@@ -103,7 +161,7 @@ def test_the_summary_fits_one_screen(written):
     lines = list(summary.lines())
     assert len(lines) <= 24
     assert all(len(line) <= 120 for line in lines)
-    total = sum(len(lecture(key).steps) for key in IN_TOUR)
+    total = sum(len(lecture(key).steps) for key in LECTURES)
     assert f"{total} of {total} steps proved and replayed" in "\n".join(lines)
     assert "agree" in "\n".join(lines)
 

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 
 import pytest
 
+from derive.functions import Quotient
 from derive.latex import latex, mathml, plain
 from derive.latex.layout import layout, split, width
 from derive.latex.mathml import math
@@ -44,6 +45,7 @@ P_k, B_ed = letter("P k-1", sub="k-1"), letter("B_ed", sub="ed")
 xi, Phi = letter("xi", glyph="xi"), letter("Phi", glyph="Φ")
 sigma = Symbol("sigma", glyph=Glyph("sigma", sub="ξ", sup="2"), scalar=True)
 half = Number(Fraction(1, 2))
+N, kappa, rho = (Symbol(name, glyph=Glyph(name), scalar=True) for name in ("N", "kappa", "rho"))
 
 TABLE = [
     ((A - L * C).T, r"(A - L C)^\top", "(A - L C)'"),
@@ -65,6 +67,8 @@ TABLE = [
     (Product((half, A)).T, r"(\tfrac12 A)^\top", "(1/2 A)'"),
     (A + Product((Number(Fraction(-2)), B)), "A - 2 B", "A - 2 B"),
     (Product((Number(Fraction(2, 15)), A)), r"\tfrac{2}{15} A", "2/15 A"),
+    (Quotient(kappa, rho), r"\frac{\kappa}{\rho}", None),
+    (Quotient(N, V), r"\frac{N}{V}", None),
     (Dot(x), r"\dot x", "x\u0307"),
     (Dot(x_bar), r"\dot{\bar x}", "x\u0304\u0307"),
     (Dot(P_e), r"\dot P_e", "P\u0307_e"),
