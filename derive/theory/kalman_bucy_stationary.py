@@ -114,7 +114,8 @@ def declare_plant(t: Theory) -> None:
     )
     Phi_x = s["Phi_x(ω)"]
     t.complex |= {S_y.name, S_z.name}
-    t.define("two-sided transform", Phi_x, s["G+"] + s["G-"].T)
+    both = s["G+"] + s["G-"].T
+    t.assume("two-sided transform", Phi_x, "=", both, "the integral over all lags, split at 0", case=True)
     t.define("spectrum of y", S_y, C * Phi_x * C.T + V)
     t.define("spectrum of z", S_z, C * Phi_x * C.T)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from click.testing import CliRunner
 
@@ -78,7 +79,7 @@ MISSING = {
 }  # fmt: skip
 
 
-def listed() -> dict[str, dict[str, str | int]]:
+def listed() -> dict[str, dict[str, Any]]:
     """Return what ``derive list --equations 001 --json`` says, by number."""
     result = CliRunner().invoke(cli, ["list", "--equations", "001", "--json"])
     assert result.exit_code == 0
