@@ -305,6 +305,12 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
     )  # fmt: skip
 
 
+def over_roots(t: Theory, root: Symbol, point: Term) -> Roots:
+    """Return the product of (point - root) over a family of roots."""
+    family = t.families[root.name]
+    return Roots(point, root, t.symbols[family.index], t.symbols[family.count])
+
+
 def whole(b: ScalarBuilder, body: Term) -> Term:
     """Return (1/2π) times the integral over the frequency axis."""
     return Quotient(ONE, 2 * PI) * Definite(body, b.theory.symbols["ω"], Neg(Infinity()), Infinity())
@@ -359,6 +365,7 @@ def derive_first_term(
     poles: Sequence[tuple[Symbol, int]],
     limit: Term,
     by_roots: str,
+    number: str = "",
 ) -> Limit:
     """Derive lim s ln|f(s)|/2 as s grows along the reals, root by root; the roots come with the sign of s."""
     t = b.theory
@@ -371,5 +378,5 @@ def derive_first_term(
     decays = Sum(tuple(Neg(d) if side < 0 else d for d, (_, _, side) in zip(decay, signed, strict=True)))
     b.state(f"s ln|{name}|", Equation(HALF * s * log, "=", decays), "the terms with ln s² cancel", [f"ln|{name}| along the reals"])  # fmt: skip
     first = Limit(HALF * s * log, s, Infinity())
-    b.linked(f"first term of {name}", Equation(first, "=", limit), "same argument", "root by root", [f"s ln|{name}|"])
+    b.linked(f"first term of {name}", Equation(first, "=", limit), "same argument", "root by root", [f"s ln|{name}|"], number=number, source=SOURCE if number else "")  # fmt: skip
     return first
