@@ -20,6 +20,7 @@ LECTURES = {
     "luenberger": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
+    "spectrum": "derive.theory.spectrum",
     "duality": "derive.theory.duality",
 }
 OWN_PAGE = frozenset({"kalman-bucy", "scalar", "spectrum"})  # long: in the tour, each has a page beside the first one
@@ -29,6 +30,7 @@ THEORIES = {
     "luenberger-dt": "derive.theory.luenberger",
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
+    "spectrum": "derive.theory.spectrum",
     "duality": "derive.theory.duality",
     "lqr-dt": "derive.theory.regulator:discrete",
     "lqr-ct": "derive.theory.regulator:continuous",
