@@ -12,6 +12,7 @@ from functools import cache
 from derive.context import Theory
 from derive.derivation import Lecture
 from derive.theory import (
+    scalar_bounds,
     scalar_continuous,
     scalar_cross,
     scalar_discrete,
@@ -25,8 +26,8 @@ from derive.theory.scalar_builder import ScalarBuilder
 
 KEY, THEORY = "scalar", "scalar"
 PARTS = (
-    scalar_continuous, scalar_transient, scalar_discrete, scalar_recursion, scalar_cross, scalar_regulator,
-    scalar_limits, scalar_integral,
+    scalar_continuous, scalar_transient, scalar_discrete, scalar_recursion, scalar_bounds, scalar_cross,
+    scalar_regulator, scalar_limits, scalar_integral,
 )  # fmt: skip
 
 

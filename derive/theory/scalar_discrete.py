@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 from derive.context import Theory
 from derive.functions import Abs, Max, Quotient, Root
-from derive.terms import Equation, Glyph, Number, Term
+from derive.terms import Equation, Glyph, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 
@@ -36,7 +34,9 @@ def declare(t: Theory) -> None:
     _declare_cases(t)
 
 
-def declare_roots(t: Theory, A: Term, C: Term, Q: Term, R: Term, tail: str = "", sub: str = "", letter: str = "P") -> None:
+def declare_roots(
+    t: Theory, A: Term, C: Term, Q: Term, R: Term, tail: str = "", sub: str = "", letter: str = "P"
+) -> None:
     """Declare b, T and both roots of a discrete Riccati equation."""
     beta, T = t.scalar("b" + tail, Glyph("b", sub=sub)), t.scalar("T" + tail, Glyph("T", sub=sub))
     t.define("b" + tail, beta, linear(A, C, Q, R))

@@ -48,6 +48,7 @@ def derive(b: ScalarBuilder) -> None:
     _derive_signs(b)
     _derive_general(b)
     _derive_integrator(b)
+    _derive_silence(b)
 
 
 def _derive_signs(b: ScalarBuilder) -> None:
@@ -89,7 +90,7 @@ def _antiderivative(w: Term, S: Term, ratio: Term, other: Term | None = None) ->
 
 def _derive_general(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    A, W, g, S, w, ratio = (s[k] for k in ("A", "W", "g", "S", "ω", "ℓ"))
+    A, S, w, ratio = (s[k] for k in ("A", "S", "ω", "ℓ"))
     b.say("First let the state move by itself.")
     b.given("A ≠ 0")
     b.sign("S is positive", Equation(S, ">", ZERO), "S^2 is at least A^2", ["A ≠ 0", "S >= 0", "g >= 0", "W >= 0"])
@@ -106,7 +107,7 @@ def _derive_general(b: ScalarBuilder) -> None:
     G = _antiderivative(w, S, ratio, Abs(A))
     b.state("antiderivative", Equation(Rate(G, w), "=", ratio), "differentiate")
     b.say("At infinity the first term vanishes, because ln x is at most x - 1:")
-    _derive_bounds(b, "", ratio, "|A|")
+    _derive_bounds(b, "", ratio)
     b.state(
         "antiderivative at infinity", Equation(Limit(G, w, Infinity()), "=", PI * S - PI * Abs(A)),
         "arctan tends to π/2", ["limit of the first term"],
@@ -119,10 +120,9 @@ def _derive_general(b: ScalarBuilder) -> None:
     )  # fmt: skip
     factor = Quotient(square(w) + square(S), square(w) + square(A))
     _derive_corollary(b, "", ratio, factor, "spectral factor", [])
-    del W, g
 
 
-def _derive_bounds(b: ScalarBuilder, tail: str, ratio: Term, other: str) -> None:
+def _derive_bounds(b: ScalarBuilder, tail: str, ratio: Term) -> None:
     s = b.theory.symbols
     W, g, w = (s[k] for k in ("W", "g", "ω"))
     bound, case = Quotient(g * W, w), ["A = 0"] if tail else []
@@ -186,7 +186,7 @@ def _derive_integrator(b: ScalarBuilder) -> None:
     b.state("spectral factor" + tail, Equation(spectrum(A, W, g, w), "=", factor), "S^2 = g W", ["A = 0"])
     G = _antiderivative(w, S, ratio)
     b.state("antiderivative" + tail, Equation(Rate(G, w), "=", ratio), "differentiate")
-    _derive_bounds(b, tail, ratio, "")
+    _derive_bounds(b, tail, ratio)
     b.state(
         "at infinity" + tail, Equation(Limit(G, w, Infinity()), "=", PI * S), "arctan tends to π/2",
         ["limit of the first term" + tail],
@@ -197,3 +197,23 @@ def _derive_integrator(b: ScalarBuilder) -> None:
         "the difference of the limits", ["antiderivative" + tail, "at infinity" + tail, "at zero" + tail],
     )  # fmt: skip
     _derive_corollary(b, tail, ratio, factor, "spectral factor" + tail, ["no modulus"])
+
+
+def _derive_silence(b: ScalarBuilder) -> None:
+    s = b.theory.symbols
+    A, C, V, W, g, P, w = (s[k] for k in ("A", "C", "V", "W", "g", "P", "ω"))
+    body, tail = Log(spectrum(A, W, g, w)), " of an integrator without noise"
+    b.say("An integrator without process noise has the spectrum one, and the double root:")
+    b.state("spectrum" + tail, Equation(spectrum(A, W, g, w), "=", ONE), "no process noise", ["W = 0"])
+    b.linked("logarithm" + tail, Equation(body, "=", Log(ONE)), "same argument", "the spectrum", ["spectrum" + tail])
+    b.state("integrand" + tail, Equation(Rate(ZERO, w), "=", body), "both are zero",
+            ["logarithm" + tail, "logarithm of one"])  # fmt: skip
+    for point, name in ((Infinity(), "at infinity"), (ZERO, "at zero")):
+        b.state(name + tail, Equation(Limit(ZERO, w, point), "=", ZERO), "a constant")
+    b.linked("half the integral" + tail, Equation(Definite(body, w, ZERO, Infinity()), "=", ZERO), "integral",
+             "zero is an antiderivative", ["integrand" + tail, "at infinity" + tail, "at zero" + tail])  # fmt: skip
+    whole = Quotient(ONE, 2 * PI) * Definite(body, w, Neg(Infinity()), Infinity())
+    b.state(
+        "corollary 2" + tail, Equation(P, "=", Quotient(V, square(C)) * (whole + 2 * Max(A))), "both sides are zero",
+        ["half the integral" + tail, "no maximum", "double root"], number="31", source=SOURCE,
+    )  # fmt: skip

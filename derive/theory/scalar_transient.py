@@ -48,6 +48,10 @@ def declare(t: Theory) -> None:
              text="the state is stable, or excited and seen, or the start is uncertain and seen")  # fmt: skip
     t.atom("reciprocal", floor, "not (C W = 0, A > 0, P0 = 0)", "1/floor")
     t.atom("reciprocal", ONE + g * s["P0"] * time, "1 + g P0 t > 0", "1/(1+gP0t)")
+    t.assume("t > 0", time, ">", text="after the start", case=True)
+    t.atom("reciprocal", time, "t > 0", "1/t")
+    t.assume("P0 <= P", s["P"] - s["P0"], "≥", text="a start below the steady state", case=True)
+    t.assume("P0 >= P", s["P0"] - s["P"], "≥", text="a start above the steady state", case=True)
     t.assume("S + A > 0", S + A, ">", text="the state is unstable, or excited and seen", case=True)
     t.atom("reciprocal", S + A, "S + A > 0", "1/(S+A)")
     decay = Exp(-2 * S * time)
@@ -135,6 +139,16 @@ def _derive_comparison(b: ScalarBuilder) -> None:
         "direction", Equation(Rate(one, time), "=", Quotient(riccati(A, W, g, P0) * decay, square(D0))),
         "differentiate the quotient", ["decay"],
     )  # fmt: skip
+    P, other = s["P"], s["P-"]
+    b.state("rate at the start", Equation(riccati(A, W, g, P0), "=", g * (P - P0) * (P0 - other)), "both roots")
+    start, now = riccati(A, W, g, P0), Rate(one, time)
+    for case, name, at_start, later in (("P0 <= P", "rises", start, now), ("P0 >= P", "falls", -start, -now)):
+        b.given(case)
+        b.sign(f"it {name} at the start", Equation(at_start, "≥", ZERO), "a product",
+               [case, "g >= 0", "P0 >= 0", "P- <= 0"], identities=["rate at the start"])  # fmt: skip
+        b.sign(f"it {name}", Equation(later, "≥", ZERO), "the rate at the start decides",
+               [f"it {name} at the start", "e^(-2St) > 0"], squares=[Quotient(ONE, D0)],
+               identities=["direction"])  # fmt: skip
 
 
 def _derive_limit(b: ScalarBuilder) -> None:
@@ -175,6 +189,9 @@ def _derive_limit(b: ScalarBuilder) -> None:
 def _derive_special(b: ScalarBuilder) -> None:
     s = b.theory.symbols
     A, W, g, S, h, P0, P_t, time = (s[k] for k in ("A", "W", "g", "S", "h", "P0", "P0(t)", "t"))
+    b.say("A stable state that the output does not see approaches its own covariance:")
+    b.state("distance of an unseen state", Equation(P_t - s["p"], "=", (P0 - s["p"]) * Exp(-2 * S * time)),
+            "the denominator is one", ["C = 0", "S = -A", "decay"])  # fmt: skip
     b.say("Started without error and without excitation, the error stays zero, whatever the upper root is:")
     b.given("P0 = 0")
     b.state("zero stays zero", Equation(P_t, "=", ZERO), "the numerator vanishes", ["P0 = 0", "W = 0"])
@@ -187,6 +204,7 @@ def _derive_special(b: ScalarBuilder) -> None:
         "solution of an integrator", Equation(P_t, "=", Quotient(P0 + W * time, ONE + g * P0 * time)),
         "h = t", ["h = t", "S = 0", "A = 0"],
     )  # fmt: skip
+    _derive_double_root(b)
     b.say("Where ", A, " is positive, ", S - A, " cancels; multiplied by its conjugate it does not:")
     b.given("S + A > 0")
     conjugate = Quotient(g * W, S + A)
@@ -198,3 +216,22 @@ def _derive_special(b: ScalarBuilder) -> None:
     over = 2 * S * P0 * decay + (P0 * (S + A) + W) * (ONE - decay)
     b.state("explicit, unstable", Equation(P_t, "=", Quotient(over, under)), "insert the conjugate",
             ["explicit solution", "conjugate", "decay"])  # fmt: skip
+
+
+def _derive_double_root(b: ScalarBuilder) -> None:
+    s = b.theory.symbols
+    g, P0, time = (s[k] for k in ("g", "P0", "t"))
+    b.say("Without excitation that is at most ", Quotient(ONE, g * time), ", whatever the start:")
+    b.given("t > 0")
+    b.sign("g > 0", Equation(g, ">", ZERO), "a square that is not zero", ["C ≠ 0", "1/V > 0"])
+    b.sign("1/g > 0", Equation(Quotient(ONE, g), ">", ZERO), "a reciprocal has the sign of its number", ["g > 0"])
+    b.sign("1/t > 0", Equation(Quotient(ONE, time), ">", ZERO), "a reciprocal has the sign of its number", ["t > 0"])
+    value, bound = Quotient(P0, ONE + g * P0 * time), Quotient(ONE, g * time)
+    under = "1/(1 + g P0 t) > 0"
+    b.sign(under, Equation(Quotient(ONE, ONE + g * P0 * time), ">", ZERO), "a reciprocal has the sign of its number",
+           ["1 + g P0 t > 0"])  # fmt: skip
+    b.sign("double root from above", Equation(bound, "≥", value), "leave out the one", ["1/g > 0", "1/t > 0", under])
+    b.sign("double root from below", Equation(bound, "≥", -value), "the covariance is not negative",
+           ["1/g > 0", "1/t > 0", under, "P0 >= 0"])  # fmt: skip
+    b.linked("limit at the double root", Equation(Limit(value, time, Infinity()), "=", ZERO), "squeeze",
+             "between bounds that vanish", ["double root from above", "double root from below"])  # fmt: skip
