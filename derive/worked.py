@@ -6,6 +6,7 @@ What a validation says comes in as plain data of schema lmi-validate/1.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from derive.notes.figures import covariance_ellipses, deviations_over_time, eigenvalue_map
@@ -14,6 +15,7 @@ from derive.numeric.plant import Plant
 from derive.numeric.response import Response, covariance_ellipse, covariance_response
 from derive.terms import Block as Matrix
 from derive.terms import Glyph, Neg, Symbol, Term
+from derive.worked_spectrum import spectrum_section
 
 __all__ = ["worked_example"]
 
@@ -45,9 +47,7 @@ def worked_example(plant: Plant, validation: Mapping[str, Any], about: str = "")
         Section(f"Worked example: {plant.name}", 1, anchor),
         *([Para((about,))] if about else []),
         *([Para((f"Data: {plant.source}.",))] if plant.source else []),
-        Display(
-            tuple(_row(name, getattr(plant, name)) for name in ("A", "C", "W", "V", *("N" if plant.N.any() else "")))
-        ),
+        Display(tuple(_given(plant, name) for name in ("A", "C", "W", "V", *("N" if plant.N.any() else "")))),
         Section("Modes", 2, f"{anchor}-modes"),
         Para(("Eigenvalues of ", A, " and, with the optimal gain, of the error matrix ", A - L * C, ":")),
         _mode_table(response),
@@ -57,10 +57,17 @@ def worked_example(plant: Plant, validation: Mapping[str, Any], about: str = "")
         Display((_row("L", _gain(validation)), _row("P", response.steady))),
         _deviation_figure(plant, response),
         _ellipse_figure(plant, response),
+        *spectrum_section(plant, validation, f"{anchor}-spectrum"),
         Section("Every route to the steady covariance", 2, f"{anchor}-routes"),
         Para((_verdict(validation),)),
         _route_table(plant, validation),
     ]
+
+
+def _given(plant: Plant, name: str) -> Row:
+    """Return a matrix of the plant, in discrete time with the letters of covariances."""
+    shown = name if plant.is_continuous else {"W": "Q", "V": "R", "N": "S"}.get(name, name)
+    return replace(_row(name, getattr(plant, name)), lhs=letter(shown))
 
 
 def _row(name: str, values: Any) -> Row:
@@ -167,11 +174,12 @@ def _route_table(plant: Plant, validation: Mapping[str, Any]) -> Table:
             (ROUTES.get(route["name"], ""),),
             (number(route["trace"], ".8g"),),
             (number(route["output"], ".8g"),),
+            (number(route.get("output_digits"), "d"),),
             (number(route["relative_difference"], ".0e"),),
             (number(route["residual"], ".0e"),),
             (route["status"],),
         )
         for route in validation["routes"]
     ]
-    head = ("route", "what it computes", "tr P", output, "difference", "own error", "status")
+    head = ("route", "what it computes", "tr P", output, "digits proved", "difference", "own error", "status")
     return Table(head, tuple(rows))

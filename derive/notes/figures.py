@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy import complexfloating
     from numpy.typing import NDArray
 
-__all__ = ["covariance_ellipses", "deviations_over_time", "eigenvalue_map"]
+__all__ = ["covariance_ellipses", "deviations_over_time", "eigenvalue_map", "spectrum_area"]
 
 COLOURS = ("#1a5fb4", "#c64600", "#26a269", "#813d9c", "#986a44", "#5e5c64")
 STYLE: Any = {
@@ -94,15 +94,83 @@ def covariance_ellipses(ellipses: Sequence[tuple[str, NDArray[Any]]], labels: tu
         return _svg(figure)
 
 
+def spectrum_area(
+    frequencies: NDArray[Any],
+    heights: NDArray[Any],
+    blocks: Sequence[tuple[str, float]],
+    total: str,
+    continuous: bool = True,
+) -> str:
+    """Draw a spectrum as an area, and beside it, as blocks, the area and what is added to it.
+
+    In continuous time the axis of frequency is logarithmic, so the heights have to be w times the integrand: over ln w
+    their area is the integral over w. In discrete time the axis is linear, from 0 to pi.
+
+    Args:
+        frequencies: shape (k,).
+        heights: shape (k,), whose area over the axis is the first block.
+        blocks: label and size of each block, the first one the area; a negative one goes down.
+        total: label of the sum.
+        continuous: whether time is.
+    """
+    with _drawing(7.0, 3.1, widths=(4.0, 0.55 * len(blocks) + 0.55)) as (figure, (left, right)):
+        left.fill_between(frequencies, heights, color=COLOURS[0], alpha=0.25, lw=0)
+        left.plot(frequencies, heights, color=COLOURS[0], lw=1.6)
+        if continuous:
+            left.set_xscale("log")
+            left.minorticks_off()
+        left.set(xlabel=r"$\omega$ [rad/s]" if continuous else r"$\omega$ [rad]", ylabel=_measure(continuous))
+        left.set_xlim((frequencies[0], frequencies[-1]) if continuous else (0.0, 3.1415926535))
+        _blocks(right, blocks, total)
+        for axes, least, most in ((left, min(heights), max(heights)), (right, *_levels(blocks))):
+            axes.set_ylim(1.15 * min(least, 0.0), 1.15 * max(most, 0.0) or 1.0)
+            axes.axhline(0, color="#5d6675", lw=0.8)
+        return _svg(figure)
+
+
+def _measure(continuous: bool) -> str:
+    """Return the label of what has the integral as its area over the axis of frequency."""
+    return r"$\omega\,\ln(\det\Phi_y/\det V)/\pi$" if continuous else r"$\ln(\det\Phi_y/\det R)/\pi$"
+
+
+def _blocks(axes: Any, blocks: Sequence[tuple[str, float]], total: str) -> None:
+    """Draw blocks, each from where the last one ends, and their sum."""
+    level, steps = 0.0, [*blocks, (total, sum(size for _, size in blocks))]
+    for i, (_, size) in enumerate(steps):
+        start = 0.0 if i == len(blocks) else level
+        colour = "#5e5c64" if i == len(blocks) else COLOURS[i]
+        level = start + size
+        axes.fill_between([i - 0.36, i + 0.36], start, level, color=colour, alpha=0.25, lw=0)
+        axes.plot([i - 0.36, i + 0.36], [level, level], color=colour, lw=1.6)
+        at = (i, max(start, level))
+        axes.annotate(f"{size:.4g}", at, (0, 3), textcoords="offset points", ha="center", color=colour)
+    axes.set_xticks(range(len(steps)), [label for label, _ in steps])
+    axes.tick_params(axis="x", length=0)
+    axes.set_yticks([])
+    axes.spines[["left", "bottom"]].set_visible(False)
+
+
+def _levels(blocks: Sequence[tuple[str, float]]) -> tuple[float, float]:
+    """Return the lowest and the highest level that the blocks reach."""
+    levels = [sum(size for _, size in blocks[:k]) for k in range(len(blocks) + 1)]
+    return min(levels), max(levels)
+
+
 @contextmanager
-def _drawing(width: float, height: float) -> Iterator[tuple[Figure, Any]]:
-    """Draw without a display, in the style of the notes, and leave no trace in the user's settings."""
+def _drawing(width: float, height: float, widths: Sequence[float] = (1.0,)) -> Iterator[tuple[Figure, Any]]:
+    """Draw without a display, in the style of the notes, and leave no trace in the user's settings.
+
+    Args:
+        width: of the drawing.
+        height: of the drawing.
+        widths: of the axes that lie side by side, relative to each other.
+    """
     import matplotlib
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
-        yield figure, figure.subplots()
+        yield figure, figure.subplots(ncols=len(widths), width_ratios=widths)
 
 
 def _svg(figure: Figure) -> str:
@@ -112,8 +180,10 @@ def _svg(figure: Figure) -> str:
 
 
 def _compact(svg: str) -> str:
-    """Drop what does not show: description, comments, white space between tags, names that nothing refers to."""
+    """Drop what does not show: description, comments, white space between tags, names that nothing refers to, and
+    hundredths of a point in paths."""
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"\s*\n\s*(?=[^<\s])", " ", re.sub(r">\s+<", "><", svg))
+    svg = re.sub(r' d="[^"]*"', lambda path: re.sub(r"(\.\d)\d+", r"\1", path[0]), svg)
     used = set(re.findall(r"#([^\s\")]+)", svg))
     return re.sub(r' id="([^"]*)"', lambda m: m[0] if m[1] in used else "", svg)
