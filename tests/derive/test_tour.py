@@ -216,9 +216,13 @@ def test_a_file_in_the_way(tmp_path):
 def test_the_example_of_any_plant(data):
     plant = plant_from_mapping(data)
     blocks = worked.worked_example(plant, validate(plant).as_dict(), "What it is.")
-    assert [type(b) for b in blocks if isinstance(b, (Figure, Table))] == [Table, Figure, Figure, Figure, Table]
+    assert [type(b) for b in blocks if isinstance(b, (Figure, Table))] == [
+        *(Table, Figure, Figure, Figure, Figure, Table),
+    ]
     shown = {row.id for b in blocks if isinstance(b, Display) for row in b.rows}
     assert ("worked-example-N" in shown) == ("N" in data)
+    letters = {row.id: plain(row.lhs) for b in blocks if isinstance(b, Display) for row in b.rows}
+    assert letters["worked-example-V"] == ("V" if plant.is_continuous else "R")
     anchors = [b.id for b in blocks if isinstance(b, Section)]
     assert len(set(anchors)) == len(anchors)
 
