@@ -32,33 +32,8 @@ from derive.real import (
     reflect,
     scalar,
 )
-from derive.spectral import (
-    At,
-    Det,
-    Entry,
-    ImaginaryPart,
-    Modulus,
-    RealPart,
-    Roots,
-    TimesArctan,
-    TimesLog,
-    Total,
-)
-from derive.terms import (
-    Equation,
-    MissingInverse,
-    Neg,
-    Number,
-    Product,
-    Reading,
-    Sum,
-    Symbol,
-    Term,
-    Trace,
-    Zero,
-    lower,
-    walk,
-)
+from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
+from derive.terms import Equation, MissingInverse, Neg, Number, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower
 
 PI = Symbol(CIRCLE, scalar=True)
 

@@ -6,8 +6,8 @@ instance: a step about arbitrary parameters, with others in their place. sum ove
 summed. conjugate: the roots of a real polynomial may be replaced by their conjugates. same roots: equal products over
 roots have equal sums over roots. linear: the sum or difference of two improper integrals. modulus: ln |f| where f is a
 quotient of products over roots. roots' trace: tr M is the sum of the real parts of the eigenvalues. exchange:
-det(I + XY) = det(I + YX). single: a matrix with one row and column is its determinant. det > 0 of a positive definite matrix. trace sign: tr(MP) >= 0 for M, P >= 0. resolvent:
-tr(X (sI - M)^-1 Y) tends to 0. Standard library only.
+det(I + XY) = det(I + YX). single: a matrix with one row and column is its determinant. positive: det M > 0 for M > 0,
+and tr(MP) >= 0 for M, P >= 0. resolvent: tr(X (sI - M)^-1 Y) tends to 0. Standard library only.
 """
 
 from __future__ import annotations
@@ -57,7 +57,13 @@ def _match(pattern: Term | Equation, found: Term | Equation, images: dict[Symbol
 
 
 def _terms(item: object) -> list[Term]:
-    return [item] if isinstance(item, Term) else [t for t in item if isinstance(t, Term)] if isinstance(item, tuple) else []  # fmt: skip
+    return (
+        [item]
+        if isinstance(item, Term)
+        else [t for t in item if isinstance(t, Term)]
+        if isinstance(item, tuple)
+        else []
+    )
 
 
 def _put(item: object, images: Mapping[Symbol, Term]) -> object:
@@ -138,7 +144,11 @@ def check_conjugate(statement: Equation, links: Links, reading: Reading) -> None
             raise Rejected("both sides must be sums over the same index")
     _readable(statement, reading)
     real = reading.real
-    moved = [y for y in real.families.values() if y.index == i.name and any(_uses(left, p, reading) for p in (y.real, y.imaginary))]  # fmt: skip
+    moved = [
+        y
+        for y in real.families.values()
+        if y.index == i.name and any(_uses(left, p, reading) for p in (y.real, y.imaginary))
+    ]
     if len(moved) != 1 or reflect(left, moved[0].imaginary, real) != right:
         raise Rejected("it is no sum over one family and its conjugate")
 
@@ -194,9 +204,19 @@ def _replaced(term: Term, images: Mapping[Term, Term]) -> Term:
         return images[term]
 
     def within(part: object) -> object:
-        return _replaced(part, images) if isinstance(part, Term) else tuple(map(within, part)) if isinstance(part, tuple) else part  # fmt: skip
+        return (
+            _replaced(part, images)
+            if isinstance(part, Term)
+            else tuple(map(within, part))
+            if isinstance(part, tuple)
+            else part
+        )
 
-    return term if isinstance(term, Symbol) else replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})  # type: ignore[type-var]  # fmt: skip
+    return (
+        term
+        if isinstance(term, Symbol)
+        else replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})
+    )  # type: ignore[type-var]
 
 
 def check_modulus(statement: Equation, links: Links, reading: Reading) -> None:

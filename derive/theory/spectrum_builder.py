@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from derive.context import DeclaredFact
 from derive.derivation import Proof, Rule, Step, Text
-from derive.functions import is_scalar
-from derive.kernel import Poly
+from derive.functions import Limit, is_scalar, value
+from derive.kernel import Poly, Rejected
 from derive.kernel import Term as Addend
-from derive.terms import Equation
+from derive.spectral import Entry
+from derive.terms import Equation, Reading, walk
 from derive.theory.builder import Builder
 from derive.theory.scalar_builder import ScalarBuilder
 
@@ -39,11 +42,48 @@ class SpectrumBuilder(ScalarBuilder):
         return super().prove(claim, using, trace, label)
 
     def record(self, step: Step) -> Step:
-        """Replay a step and keep it; only statements about numbers name the cases of their atoms."""
-        return super().record(step) if is_scalar(step.statement) else Builder.record(self, step)
+        """Replay a step and keep it; one about numbers also names the limits it reads, and l = 1 if it has entries."""
+        if not is_scalar(step.statement):
+            return Builder.record(self, step)
+        nodes = [n for side in (step.statement.lhs, step.statement.rhs) for n in walk(side)]
+        single = [n for n, d in self.theory.declared.items() if isinstance(d, DeclaredFact) and d.kind == "single"]
+        entries = single if any(isinstance(n, Entry) for n in nodes) else []
+        read = [n for n in nodes if isinstance(n, Limit)]
+        if step.rule == "same argument" and isinstance(step.statement.lhs, Limit):
+            found = self.steps[step.proof.links[0]].statement.rhs
+            read = [replace(step.statement.lhs, body=found)]
+        return super().record(replace(step, uses=(*step.uses, *entries, *self._limits(read))))
+
+    def _limits(self, read: Sequence[Limit]) -> list[str]:
+        """Return the steps without which limits are not known."""
+        known = [n for n in read if self._readable(n, self.reading)]
+        return [name for name in self.steps if known and not all(self._readable(n, self._without(name)) for n in known)]
+
+    def _without(self, name: str) -> Reading:
+        """Return the reading without the limit that a step has proved."""
+        reading, lhs = self.reading, self.steps[name].statement.lhs
+        if not isinstance(lhs, Limit):
+            return reading
+        known = value(lhs.body, reading)
+        limits = {k: v for k, v in reading.real.limits.items() if known.terms.keys() != {(k[2], ())}}
+        sums = tuple(k for k in reading.real.sums if k[2] != known)
+        return replace(reading, real=replace(reading.real, limits=limits, sums=sums))
+
+    def _readable(self, term: Limit, reading: Reading) -> bool:
+        try:
+            value(term, reading)
+        except Rejected:
+            return False
+        return True
 
     def positive_number(
-        self, name: str, statement: Equation, reason: str | Text, facts: Sequence[str], number: str = "", source: str = ""
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        facts: Sequence[str],
+        number: str = "",
+        source: str = "",
     ) -> Step:
         """Prove det V > 0 or tr(M P) >= 0 from facts about the matrices."""
         return self._keep(name, statement, "positive", reason, Proof(links=tuple(facts)), number, source, True)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from derive.context import Theory
-from derive.derivation import Evidence
-from derive.functions import Abs, Infinity, Limit, Log, Max, Quotient
-from derive.spectral import At, Det, Entry, Modulus, RealPart, Roots, Total
-from derive.terms import Equation, Glyph, Identity, Neg, Number, Product, Symbol, Term, Trace, Zero
+from derive.functions import Abs, Definite, Infinity, Limit, Log, Max, Quotient
+from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
+from derive.terms import Equation, Glyph, Identity, Neg, Product, Symbol, Term, Trace, Zero
 from derive.theory.scalar_continuous import ONE, ZERO
 from derive.theory.spectrum_builder import SpectrumBuilder
 from derive.theory.spectrum_roots import (
@@ -22,10 +22,25 @@ from derive.theory.spectrum_roots import (
     derive_integral,
     derive_root,
     on_axis,
+    root_integrand,
     whole,
 )
 
 GENERIC = "s is a generic point"
+
+
+@dataclass(frozen=True)
+class Filter:
+    """A steady filter: names of its gain, its spectrum and its closed loop's eigenvalues, and what its steps end in."""
+
+    gain: str = "K"
+    spectrum: str = "Phi_y"
+    closed: str = "μ"
+    tail: str = ""
+
+
+PAPER = Filter()
+TRACES = ("trace by λ", "trace by μ", "trace of KC")
 
 
 # ------------------------------------------------------------------------------------------------ declarations
@@ -68,27 +83,47 @@ def _point(t: Theory, sign: int, matrix: Term) -> Term:
     return (s * size if sign > 0 else -(s * size)) - matrix
 
 
-def factor(t: Theory, sign: int = 1) -> Term:
+def factor(t: Theory, sign: int = 1, f: Filter = PAPER) -> Term:
     """Return I + C (sI - A)^-1 K."""
-    return Identity("l") + t.symbols["C"] * resolvent(t, sign) * t.symbols["K"]
+    return Identity("l") + t.symbols["C"] * resolvent(t, sign) * t.symbols[f.gain]
+
+
+def closed_loop(t: Theory, f: Filter = PAPER) -> Term:
+    """Return A - KC."""
+    return t.symbols["A"] - t.symbols[f.gain] * t.symbols["C"]
+
+
+def _declare_eigenvalues(t: Theory, root: Symbol, matrix: Term, of: str) -> None:
+    i, m, s = (t.symbols[k] for k in ("i", "m", "s"))
+    declare_family(t, root, 1, -1)
+    for sign in (1, -1):
+        body, name = _point(t, sign, matrix), f"eigenvalues {root.name}{'' if sign > 0 else ' at -s'}"
+        t.atom("spectral", Det(body), name=f"det of {name}")
+        t.define(name, Det(body), Roots(s if sign > 0 else Neg(s), root, i, m), f"the eigenvalues of {of}")
+    integrand = root_integrand(t.symbols["ω"], RealPart(root), ImaginaryPart(root))
+    t.atom("improper", integrand, name=f"integral of {root.name}")
+
+
+def declare_filter(t: Theory, f: Filter, glyph: str) -> None:
+    """Declare the eigenvalues of the closed loop, and the determinants and traces of one filter."""
+    K, C, Phi = (t.symbols[k] for k in (f.gain, "C", f.spectrum))
+    closed = t.roots(f.closed, t.symbols["i"], t.symbols["m"], Glyph(glyph, sub="i"), meaning="eigenvalues of A - KC")
+    _declare_eigenvalues(t, closed, closed_loop(t, f), "A - KC")
+    t.assume("strong solution" + f.tail, Neg(RealPart(closed)), "≥", text="the stabilising solution, or the strong one")
+    for name, body in (
+        (f.spectrum, Phi), ("factor", factor(t, 1, f)), ("factor at -s", factor(t, -1, f)),
+        ("exchanged", Identity("m") + K * C * resolvent(t)),
+        ("exchanged at -s", Identity("m") + K * C * resolvent(t, -1)),
+    ):  # fmt: skip
+        t.atom("spectral", Det(body), name=f"det {name}{f.tail}")
+    t.atom("spectral", Trace(K * C), name=f"tr KC{f.tail}")
+    declare_integrals(t, f.spectrum, log_spectrum(t, f), closed, t.symbols["λ"])
 
 
 def _declare_roots(t: Theory) -> None:
-    A, C, K, i, m, s = (t.symbols[k] for k in ("A", "C", "K", "i", "m", "s"))
+    A, i, m = (t.symbols[k] for k in ("A", "i", "m"))
     open_loop = t.roots("λ", i, m, Glyph("λ", sub="i"), of="A", meaning="eigenvalues of A")
-    closed = t.roots("μ", i, m, Glyph("μ", sub="i"), meaning="eigenvalues of A - KC")
-    for root, matrix in ((open_loop, A), (closed, A - K * C)):
-        declare_family(t, root, 1, -1)
-        for sign in (1, -1):
-            body, name = _point(t, sign, matrix), f"eigenvalues {root.name}{'' if sign > 0 else ' at -s'}"
-            t.atom("spectral", Det(body), name=f"det of {name}")
-            t.define(name, Det(body), Roots(s if sign > 0 else Neg(s), root, i, m), f"the eigenvalues of {'A' if root is open_loop else 'A - KC'}")  # fmt: skip
-        re, w = RealPart(root), t.symbols["ω"]
-        from derive.spectral import ImaginaryPart
-        from derive.theory.spectrum_roots import root_integrand
-
-        t.atom("improper", root_integrand(w, re, ImaginaryPart(root)), name=f"integral of {root.name}")
-    t.assume("strong solution", Neg(RealPart(closed)), "≥", text="P is the stabilising solution, or the strong one")
+    _declare_eigenvalues(t, open_loop, A, "A")
     degree = t.scalar("h", Glyph("h"), meaning="degree of instability")
     t.symbols["h"] = degree = replace(degree, show_args=("A",))
     t.define("degree of instability", degree, Total(Max(RealPart(open_loop)), i, m))
@@ -96,24 +131,20 @@ def _declare_roots(t: Theory) -> None:
 
 def _declare_numbers(t: Theory) -> None:
     A, C, P, K, V, Phi, L, Sigma, s = (t.symbols[k] for k in ("A", "C", "P", "K", "V", "Phi_y", "L", "Sigma", "s"))
-    I = Identity("l")
-    for name, body in (
-        ("Phi_y", Phi), ("V", V), ("Phi_y V^-1", Phi * V.inv), ("factor", factor(t)), ("factor at -s", factor(t, -1)),
-        ("exchanged", Identity("m") + K * C * resolvent(t)), ("exchanged at -s", Identity("m") + K * C * resolvent(t, -1)),
-        ("I + L", I + L),
-    ):  # fmt: skip
+    one = Identity("l")
+    for name, body in (("V", V), ("Phi_y V^-1", Phi * V.inv), ("I + L", one + L)):
         t.atom("spectral", Det(body), name=f"det {name}")
+    t.atom("reciprocal", Det(V), "det V > 0", "1/det V")
+    declare_filter(t, PAPER, "μ")
     for name, body in (
-        ("A", A), ("KC", K * C), ("CPC'V^-1", C * P * C.T * V.inv), ("Sigma V^-1", Sigma * V.inv), ("CK", C * K),
+        ("A", A), ("CPC'V^-1", C * P * C.T * V.inv), ("Sigma V^-1", Sigma * V.inv), ("CK", C * K),
         ("L", L), ("CFK", C * resolvent(t) * K), ("CAFK", C * A * resolvent(t) * K),
     ):  # fmt: skip
         t.atom("spectral", Trace(body), name=f"tr {name}")
-    t.atom("reciprocal", Det(V), "det V > 0", "1/det V")
     t.atom("reciprocal", Det(factor(t)), "the factor is regular", "1/det factor")
-    t.atom("reciprocal", Det(I + L), "I + L is regular", "1/det(I+L)")
+    t.atom("reciprocal", Det(one + L), "I + L is regular", "1/det(I+L)")
     open_loop, closed = t.symbols["λ"], t.symbols["μ"]
-    declare_integrals(t, "Phi_y", log_spectrum(t), closed, open_loop)
-    sensitivity, bode = Quotient(ONE, Det(factor(t))), Quotient(ONE, Det(I + L))
+    sensitivity, bode = Quotient(ONE, Det(factor(t))), Quotient(ONE, Det(one + L))
     declare_integrals(t, "sensitivity", on_axis(t, sensitivity), open_loop, closed)
     t.atom("spectral", Log(Modulus(At(sensitivity, s, s))), name="ln|sensitivity(s)|")
     t.atom("spectral", on_axis(t, bode), name="ln|1/det(I+L)|")
@@ -121,63 +152,142 @@ def _declare_numbers(t: Theory) -> None:
     t.atom("spectral", Log(Modulus(At(bode, s, s))), name="ln|1/det(I+L(s))|")
 
 
-def spectrum_ratio(t: Theory) -> Quotient:
+def spectrum_ratio(t: Theory, f: Filter = PAPER) -> Quotient:
     """Return det Phi_y / det V."""
-    return Quotient(Det(t.symbols["Phi_y"]), Det(t.symbols["V"]))
+    return Quotient(Det(t.symbols[f.spectrum]), Det(t.symbols["V"]))
 
 
-def log_spectrum(t: Theory) -> Log:
+def log_spectrum(t: Theory, f: Filter = PAPER) -> Log:
     """Return ln(det Phi_y(ω) / det V)."""
-    return Log(At(spectrum_ratio(t), t.symbols["s"], axis(t)))
+    return Log(At(spectrum_ratio(t, f), t.symbols["s"], axis(t)))
 
 
 # ------------------------------------------------------------------------------------------------ theorem 1
 def derive(b: SpectrumBuilder) -> None:
     """Derive theorem 1 and the Bode integrals."""
-    _derive_factorisation(b)
-    _derive_roots(b)
+    t = b.theory
+    b.heading("Spectral factorisation")
+    b.say("The steady filter, and the spectrum of its input continued to all s:")
+    b.given("Riccati equation", "gain", "output error covariance", "Phi_y")
+    using = ["Phi_y", "Riccati equation", "gain"]
+    _derive_open_loop_determinant(b)
+    derive_factorisation(b, PAPER, using)
+    b.say(
+        "Eigenvalues are the roots of the characteristic polynomial; the closed loop has none in the open right half "
+        "plane:"
+    )
+    b.given("eigenvalues λ", "eigenvalues μ", "strong solution")
+    derive_eigenvalues(b, t.symbols["λ"], t.symbols["A"])
+    derive_spectrum(b, PAPER)
     _derive_theorem(b)
     _derive_bode(b)
 
 
-def _derive_factorisation(b: SpectrumBuilder) -> None:
-    t = b.theory
-    A, C, K, V, Phi, s = (t.symbols[k] for k in ("A", "C", "K", "V", "Phi_y", "s"))
-    b.heading("Spectral factorisation")
-    b.say("The steady filter, and the spectrum of its input continued to all s:")
-    b.given("Riccati equation", "gain", "output error covariance", "Phi_y")
-    inverses = ["(sI-A)^-1", "(-sI-A)^-1"]
-    b.state("spectral factorisation", Equation(Phi, "=", factor(t) * V * factor(t, -1).T), "the Riccati equation, and both inverses", ["Phi_y", "Riccati equation", "gain", "V^-1", *inverses])  # fmt: skip
-    dets = Product((Det(factor(t)), Det(V), Det(factor(t, -1).T)))
-    b.state("determinant of the spectrum", Equation(Det(Phi), "=", dets), "the determinant of a product", ["spectral factorisation"], rule="determinant")  # fmt: skip
-    for sign, name, inverse in ((1, "", inverses[0]), (-1, " at -s", inverses[1])):
-        F = resolvent(t, sign)
-        b.linked("exchange" + name, Equation(Det(factor(t, sign)), "=", Det(Identity("m") + K * C * F)), "exchange", "det(I + XY) = det(I + YX)", [])  # fmt: skip
-        product = Product((Det(Identity("m") + K * C * F), Det(_point(t, sign, A))))
-        b.state("open and closed loop" + name, Equation(product, "=", Det(_point(t, sign, A - K * C))), "the determinant of a product", [inverse], rule="determinant")  # fmt: skip
+def _derive_open_loop_determinant(b: SpectrumBuilder) -> None:
+    V = b.theory.symbols["V"]
     b.positive_number("det V > 0", Equation(Det(V), ">", ZERO), "a positive definite matrix", ["V > 0"])
 
 
-def _derive_roots(b: SpectrumBuilder) -> None:
+def derive_factorisation(b: SpectrumBuilder, f: Filter, using: Sequence[str]) -> None:
+    """Derive the spectral factors of a filter, and their determinants by those of open and closed loop."""
     t = b.theory
-    A, K, C, s, i, m, open_loop, closed = (t.symbols[k] for k in ("A", "K", "C", "s", "i", "m", "λ", "μ"))
-    b.say("Eigenvalues are the roots of the characteristic polynomial; the closed loop has none in the open right half plane:")
-    b.given("eigenvalues λ", "eigenvalues μ", "strong solution")
-    for root, matrix in ((open_loop, A), (closed, A - K * C)):
-        name = f"characteristic polynomial {root.name}"
-        b.state(name, Equation(Det(_point(t, 1, matrix)), "=", Roots(s, root, i, m)), "definition", [f"eigenvalues {root.name}"])  # fmt: skip
-        b.linked(f"trace by {root.name}", Equation(Trace(matrix), "=", Total(RealPart(root), i, m)), "trace of roots", "the trace is the sum of the eigenvalues", [name])  # fmt: skip
-        derive_root(b, root)
-        derive_family(b, root, reals=-1)
-    for sign, name in ((1, ""), (-1, " at -s")):
-        point = s if sign > 0 else Neg(s)
+    A, C, K, V, Phi = (t.symbols[k] for k in ("A", "C", f.gain, "V", f.spectrum))
+    inverses, one, other = ["(sI-A)^-1", "(-sI-A)^-1"], factor(t, 1, f), factor(t, -1, f)
+    b.state(
+        "spectral factorisation" + f.tail,
+        Equation(Phi, "=", one * V * other.T),
+        "the Riccati equation, and both inverses",
+        [*using, "V^-1", *inverses],
+    )
+    dets = Product((Det(one), Det(V), Det(other.T)))
+    b.state(
+        "determinant of the spectrum" + f.tail,
+        Equation(Det(Phi), "=", dets),
+        "the determinant of a product",
+        ["spectral factorisation" + f.tail],
+        rule="determinant",
+    )
+    for sign, where, inverse in ((1, "", inverses[0]), (-1, " at -s", inverses[1])):
+        exchanged, name = Identity("m") + K * C * resolvent(t, sign), where + f.tail
+        b.linked(
+            "exchange" + name,
+            Equation(Det(factor(t, sign, f)), "=", Det(exchanged)),
+            "exchange",
+            "det(I + XY) = det(I + YX)",
+            [],
+        )
+        product = Product((Det(exchanged), Det(_point(t, sign, A))))
+        b.state(
+            "open and closed loop" + name,
+            Equation(product, "=", Det(_point(t, sign, closed_loop(t, f)))),
+            "the determinant of a product",
+            [inverse],
+            rule="determinant",
+        )
+
+
+def derive_eigenvalues(b: SpectrumBuilder, root: Symbol, matrix: Term) -> None:
+    """Derive the trace by the eigenvalues, and put them into the lemmas about one root."""
+    t, name = b.theory, f"characteristic polynomial {root.name}"
+    s, i, m = (t.symbols[k] for k in ("s", "i", "m"))
+    b.state(
+        name, Equation(Det(_point(t, 1, matrix)), "=", Roots(s, root, i, m)), "definition", [f"eigenvalues {root.name}"]
+    )
+    b.linked(
+        f"trace by {root.name}",
+        Equation(Trace(matrix), "=", Total(RealPart(root), i, m)),
+        "trace of roots",
+        "the trace is the sum of the eigenvalues",
+        [name],
+    )
+    derive_root(b, root)
+    derive_family(b, root, reals=-1)
+
+
+def derive_spectrum(b: SpectrumBuilder, f: Filter) -> None:
+    """Derive the log-integral of the spectrum by the eigenvalues of closed and open loop."""
+    t = b.theory
+    s, i, m, open_loop, closed = (t.symbols[k] for k in ("s", "i", "m", "λ", f.closed))
+    derive_eigenvalues(b, closed, closed_loop(t, f))
+    for sign, where in ((1, ""), (-1, " at -s")):
+        point, name = s if sign > 0 else Neg(s), where + f.tail
         ratio = Quotient(Roots(point, closed, i, m), Roots(point, open_loop, i, m))
-        b.state("factor by its roots" + name, Equation(Det(factor(t, sign)), "=", ratio), "closed loop over open loop",
-                ["exchange" + name, "open and closed loop" + name, "eigenvalues λ" + name, "eigenvalues μ" + name])  # fmt: skip
+        b.state(
+            "factor by its roots" + name,
+            Equation(Det(factor(t, sign, f)), "=", ratio),
+            "closed loop over open loop",
+            [
+                "exchange" + name,
+                "open and closed loop" + name,
+                "eigenvalues λ" + where,
+                f"eigenvalues {f.closed}" + where,
+            ],
+        )
     top, bottom = (Product((Roots(s, r, i, m), Roots(Neg(s), r, i, m))) for r in (closed, open_loop))
-    b.state("spectrum by its roots", Equation(spectrum_ratio(t), "=", Quotient(top, bottom)), "both factors", ["determinant of the spectrum", "factor by its roots", "factor by its roots at -s"])  # fmt: skip
-    b.equal("closed loop", Equation(Abs(RealPart(closed)), "=", Neg(RealPart(closed))), ["|Re μ| ≥ 0", "strong solution"], reason="the closed loop is stable")  # fmt: skip
-    b.linked("closed loop, summed", Equation(Total(Abs(RealPart(closed)), i, m), "=", Total(Neg(RealPart(closed)), i, m)), "sum over", "summed over the eigenvalues", ["closed loop"])  # fmt: skip
+    factors = [
+        f"{n}{f.tail}" for n in ("determinant of the spectrum", "factor by its roots", "factor by its roots at -s")
+    ]
+    b.state(
+        "spectrum by its roots" + f.tail,
+        Equation(spectrum_ratio(t, f), "=", Quotient(top, bottom)),
+        "both factors",
+        factors,
+    )
+    re, name = RealPart(closed), "closed loop" + f.tail
+    b.equal(
+        name,
+        Equation(Abs(re), "=", Neg(re)),
+        [f"|Re {closed.name}| ≥ 0", "strong solution" + f.tail],
+        reason="the closed loop is stable",
+    )
+    b.linked(
+        name + ", summed",
+        Equation(Total(Abs(re), i, m), "=", Total(Neg(re), i, m)),
+        "sum over",
+        "summed over the eigenvalues",
+        [name],
+    )
+    derive_integral(b, f.spectrum, log_spectrum(t, f), closed, open_loop, "spectrum by its roots" + f.tail)
 
 
 def output_cost(t: Theory) -> Trace:
@@ -193,65 +303,153 @@ def unstable(t: Theory) -> Total:
 
 def _derive_theorem(b: SpectrumBuilder) -> None:
     t = b.theory
-    A, C, P, K, V, Sigma, open_loop, closed = (t.symbols[k] for k in ("A", "C", "P", "K", "V", "Sigma", "λ", "μ"))
+    C, K, V, Sigma = (t.symbols[k] for k in ("C", "K", "V", "Sigma"))
     b.heading("Theorem 1: the error covariance by the spectrum")
-    derive_integral(b, "Phi_y", log_spectrum(t), closed, open_loop, "spectrum by its roots")
-    b.state("trace of KC", Equation(Trace(K * C), "=", output_cost(t)), "the trace is cyclic", ["gain", "V^-1"], rule="trace")
-    b.given("degree of instability", numbers=("14",), source=SOURCE)
-    b.state("output error", Equation(Trace(Sigma * V.inv), "=", output_cost(t)), "equation (4)", ["output error covariance"], rule="trace", number="12", source=SOURCE)  # fmt: skip
     b.state(
-        "theorem 1", Equation(output_cost(t), "=", whole(b, log_spectrum(t)) + 2 * unstable(t)),
+        "trace of KC",
+        Equation(Trace(K * C), "=", output_cost(t)),
+        "the trace is cyclic",
+        ["gain", "V^-1"],
+        rule="trace",
+    )
+    b.given("degree of instability", numbers=("14",), source=SOURCE)
+    b.state(
+        "output error",
+        Equation(Trace(Sigma * V.inv), "=", output_cost(t)),
+        "equation (4)",
+        ["output error covariance"],
+        rule="trace",
+        number="12",
+        source=SOURCE,
+    )
+    b.state(
+        "theorem 1",
+        Equation(output_cost(t), "=", whole(b, log_spectrum(t)) + 2 * unstable(t)),
         "|x| = 2 max(0, x) - x; the traces of A cancel",
-        ["log-integral of Phi_y", "closed loop, summed", "modulus of λ, summed", "trace by λ", "trace by μ", "trace of KC"],
-        number="12", source=SOURCE,
-    )  # fmt: skip
+        ["log-integral of Phi_y", "closed loop, summed", "modulus of λ, summed", *TRACES],
+        number="12",
+        source=SOURCE,
+    )
 
 
 # ------------------------------------------------------------------------------------------------ Bode integrals
 def _derive_bode(b: SpectrumBuilder) -> None:
     t = b.theory
-    A, C, K, L, s, i, m, open_loop, closed = (t.symbols[k] for k in ("A", "C", "K", "L", "s", "i", "m", "λ", "μ"))
+    s, i, m, open_loop, closed = (t.symbols[k] for k in ("s", "i", "m", "λ", "μ"))
     b.heading("The Bode integral of the filter")
     sensitivity = Quotient(ONE, Det(factor(t)))
     b.sign("the factor is regular", Equation(Det(factor(t)), "≠", ZERO), "a quotient of polynomials that are not zero",
            ["product u(s) μ ≠ 0"], identities=["factor by its roots"])  # fmt: skip
-    b.state("sensitivity by its roots", Equation(sensitivity, "=", Quotient(Roots(s, open_loop, i, m), Roots(s, closed, i, m))), "open loop over closed loop", ["factor by its roots"])  # fmt: skip
+    b.state(
+        "sensitivity by its roots",
+        Equation(sensitivity, "=", Quotient(Roots(s, open_loop, i, m), Roots(s, closed, i, m))),
+        "open loop over closed loop",
+        ["factor by its roots"],
+    )
     derive_integral(b, "sensitivity", on_axis(t, sensitivity), open_loop, closed, "sensitivity by its roots")
     limit = HALF * Total(RealPart(closed), i, m) - HALF * Total(RealPart(open_loop), i, m)
-    first = derive_first_term(b, "sensitivity", sensitivity, [(open_loop, 1)], [(closed, 1)], limit, "sensitivity by its roots")  # fmt: skip
+    first = derive_first_term(
+        b, "sensitivity", sensitivity, [(open_loop, 1)], [(closed, 1)], limit, "sensitivity by its roots"
+    )
     cost = Neg(HALF * output_cost(t))
     b.say("Its zeros are the eigenvalues of A:")
     sums = ["log-integral of sensitivity", "closed loop, summed", "modulus of λ, summed"]
     integral = whole(b, on_axis(t, sensitivity))
-    b.state("sensitivity integral", Equation(integral, "=", first + unstable(t)), "proposition 1 for this function", [*sums, "first term of sensitivity"], number="17", source=SOURCE)  # fmt: skip
-    traces = ["trace by λ", "trace by μ", "trace of KC"]
-    b.state("sensitivity and cost", Equation(first + unstable(t), "=", cost + unstable(t)), "the trace of A - KC", ["first term of sensitivity", *traces], number="17", source=SOURCE)  # fmt: skip
-    b.state("Bode integral", Equation(integral, "=", cost + unstable(t)), "both equations", ["sensitivity integral", "sensitivity and cost"], number="18", source=SOURCE)  # fmt: skip
+    b.state(
+        "sensitivity integral",
+        Equation(integral, "=", first + unstable(t)),
+        "proposition 1 for this function",
+        [*sums, "first term of sensitivity"],
+        number="17",
+        source=SOURCE,
+    )
+    b.state(
+        "sensitivity and cost",
+        Equation(first + unstable(t), "=", cost + unstable(t)),
+        "the trace of A - KC",
+        ["first term of sensitivity", *TRACES],
+        number="17",
+        source=SOURCE,
+    )
+    b.state(
+        "Bode integral",
+        Equation(integral, "=", cost + unstable(t)),
+        "both equations",
+        ["sensitivity integral", "sensitivity and cost"],
+        number="18",
+        source=SOURCE,
+    )
     _derive_open_loop(b)
 
 
 def _derive_open_loop(b: SpectrumBuilder) -> None:
     t = b.theory
-    A, C, K, L, s, open_loop = (t.symbols[k] for k in ("A", "C", "K", "L", "s", "λ"))
-    F, I, sensitivity = resolvent(t), Identity("l"), Quotient(ONE, Det(factor(t)))
+    A, C, K, L, s = (t.symbols[k] for k in ("A", "C", "K", "L", "s"))
+    F, one, sensitivity = resolvent(t), Identity("l"), Quotient(ONE, Det(factor(t)))
     b.say("With the open loop of the filter as a feedback system")
     b.given("L", numbers=("19",), source=SOURCE)
-    b.state("det(I + L)", Equation(Det(I + L), "=", Det(factor(t))), "definition", ["L"], rule="determinant")
-    b.sign("I + L is regular", Equation(Det(I + L), "≠", ZERO), "as before", ["product u(s) μ ≠ 0"], identities=["factor by its roots", "det(I + L)"])  # fmt: skip
-    bode = Quotient(ONE, Det(I + L))
+    b.state("det(I + L)", Equation(Det(one + L), "=", Det(factor(t))), "definition", ["L"], rule="determinant")
+    b.sign(
+        "I + L is regular",
+        Equation(Det(one + L), "≠", ZERO),
+        "as before",
+        ["product u(s) μ ≠ 0"],
+        identities=["factor by its roots", "det(I + L)"],
+    )
+    bode = Quotient(ONE, Det(one + L))
     b.state("return difference", Equation(bode, "=", sensitivity), "definition", ["det(I + L)"])
-    b.linked("ln of the return difference", Equation(on_axis(t, bode), "=", on_axis(t, sensitivity)), "same argument", "the same function", ["return difference"])  # fmt: skip
+    b.linked(
+        "ln of the return difference",
+        Equation(on_axis(t, bode), "=", on_axis(t, sensitivity)),
+        "same argument",
+        "the same function",
+        ["return difference"],
+    )
     w = t.symbols["ω"]
-    from derive.functions import Definite
-
     halves = [Definite(on_axis(t, f), w, ZERO, Infinity()) for f in (bode, sensitivity)]
-    b.linked("integral of the return difference", Equation(halves[0], "=", halves[1]), "same argument", "the same integrand", ["ln of the return difference"])  # fmt: skip
+    b.linked(
+        "integral of the return difference",
+        Equation(halves[0], "=", halves[1]),
+        "same argument",
+        "the same integrand",
+        ["ln of the return difference"],
+    )
     b.say("For large s the trace of sL tends to that of CK, because s(sI - A)⁻¹ = I + A(sI - A)⁻¹:")
     b.state("resolvent", Equation(Trace(L), "=", Trace(C * F * K)), "definition", ["L"], rule="trace")
-    b.state("s times the resolvent", Equation(Trace(s * (C * F * K)), "=", Trace(C * K) + Trace(C * A * F * K)), "the inverse", ["(sI-A)^-1"], rule="trace")  # fmt: skip
-    b.linked("the resolvent vanishes", Equation(Limit(Trace(C * A * F * K), s, Infinity()), "=", ZERO), "resolvent", "its entries are strictly proper", [])  # fmt: skip
-    b.state("s tr L", Equation(HALF * s * Trace(L), "=", HALF * Trace(C * K) + HALF * Trace(C * A * F * K)), "both", ["resolvent", "s times the resolvent"])  # fmt: skip
+    b.state(
+        "s times the resolvent",
+        Equation(Trace(s * (C * F * K)), "=", Trace(C * K) + Trace(C * A * F * K)),
+        "the inverse",
+        ["(sI-A)^-1"],
+        rule="trace",
+    )
+    b.linked(
+        "the resolvent vanishes",
+        Equation(Limit(Trace(C * A * F * K), s, Infinity()), "=", ZERO),
+        "resolvent",
+        "its entries are strictly proper",
+        [],
+    )
+    b.state(
+        "s tr L",
+        Equation(HALF * s * Trace(L), "=", HALF * Trace(C * K) + HALF * Trace(C * A * F * K)),
+        "both",
+        ["resolvent", "s times the resolvent"],
+    )
     slope = Limit(HALF * s * Trace(L), s, Infinity())
-    b.linked("limit of s tr L", Equation(slope, "=", HALF * Trace(C * K)), "same argument", "the last term vanishes", ["s tr L"])  # fmt: skip
+    b.linked(
+        "limit of s tr L",
+        Equation(slope, "=", HALF * Trace(C * K)),
+        "same argument",
+        "the last term vanishes",
+        ["s tr L"],
+    )
     b.state("trace of CK", Equation(Trace(C * K), "=", output_cost(t)), "the gain", ["gain"], rule="trace")
-    b.state("Bode integral of L", Equation(whole(b, on_axis(t, bode)), "=", Neg(slope) + unstable(t)), "the Bode integral", ["integral of the return difference", "Bode integral", "limit of s tr L", "trace of CK"], number="20", source=SOURCE)  # fmt: skip
+    b.state(
+        "Bode integral of L",
+        Equation(whole(b, on_axis(t, bode)), "=", Neg(slope) + unstable(t)),
+        "the Bode integral",
+        ["integral of the return difference", "Bode integral", "limit of s tr L", "trace of CK"],
+        number="20",
+        source=SOURCE,
+    )

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 
 from derive.context import Theory
 from derive.derivation import Evidence
-from derive.functions import Abs, Infinity, Limit, Log, Max, Quotient
-from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
-from derive.terms import Equation, Glyph, Identity, Neg, Product, Sum, Symbol, Term
+from derive.functions import Abs, Log, Max, Quotient
+from derive.spectral import At, Det, Modulus, RealPart, Roots, Total
+from derive.terms import Equation, Glyph, Identity, Neg, Product
 from derive.theory.scalar_continuous import ZERO
 from derive.theory.spectrum_builder import SpectrumBuilder
 from derive.theory.spectrum_filter import log_spectrum, output_cost, resolvent, spectrum_ratio, unstable
-from derive.theory.spectrum_roots import HALF, SOURCE, derive_first_term, over_roots, whole
+from derive.theory.spectrum_roots import SOURCE, derive_first_term, over_roots, whole
 
 
 # ------------------------------------------------------------------------------------------------ declarations
@@ -44,9 +43,13 @@ def declare(t: Theory) -> None:
     t.atom("spectral", Roots(s, turned, i, m), name="product ν")
     t.atom("part", RealPart(turned), name="max(0,Re ν)")
     t.atom("spectral", Total(Max(RealPart(turned)), i, m), name="sum max ν")
-    t.define("lowest terms", spectrum_ratio(t), Quotient(over(t, "φ'"), over(t, "η'")), "zeros and poles in lowest terms")
+    t.define(
+        "lowest terms", spectrum_ratio(t), Quotient(over(t, "φ'"), over(t, "η'")), "zeros and poles in lowest terms"
+    )
     L = Identity("l") + t.symbols["L"]
-    t.define("lowest terms of det(I + L)", Det(L), Quotient(over(t, "ζ"), over(t, "π'")), "zeros and poles in lowest terms")
+    t.define(
+        "lowest terms of det(I + L)", Det(L), Quotient(over(t, "ζ"), over(t, "π'")), "zeros and poles in lowest terms"
+    )
     t.assume("zeros of det(I + L)", Neg(RealPart(t.symbols["ζ"])), "≥", text="they are among the eigenvalues of A - KC")
     common = Product((over(t, "η'"), over(t, "κ")))
     t.define("poles with those that cancel", common, Product((over(t, "λ"), over(t, "ν"))), "all that may occur")
@@ -78,15 +81,44 @@ def _derive_open_loop_poles(b: SpectrumBuilder) -> None:
     b.say("The unstable poles of L are the unstable eigenvalues of A: what cancels against the closed loop is stable.")
     b.given("lowest terms of det(I + L)", "zeros of det(I + L)")
     link = Equation(Product((over(t, "ζ"), over(t, "λ"))), "=", Product((over(t, "π'"), over(t, "μ"))))
-    b.state("zeros and poles of det(I + L)", link, "multiply out", ["lowest terms of det(I + L)", "det(I + L)", "factor by its roots"])  # fmt: skip
+    b.state(
+        "zeros and poles of det(I + L)",
+        link,
+        "multiply out",
+        ["lowest terms of det(I + L)", "det(I + L)", "factor by its roots"],
+    )
     sums = Equation(positive(t, "ζ") + positive(t, "λ"), "=", positive(t, "π'") + positive(t, "μ"))
-    b.linked("unstable zeros and poles", sums, "same roots", "equal polynomials have equal roots", ["zeros and poles of det(I + L)"])  # fmt: skip
+    b.linked(
+        "unstable zeros and poles",
+        sums,
+        "same roots",
+        "equal polynomials have equal roots",
+        ["zeros and poles of det(I + L)"],
+    )
     for name, why in (("ζ", "zeros of det(I + L)"), ("μ", "strong solution")):
         part = Max(RealPart(t.symbols[name]))
-        b.equal(f"no unstable {name}", Equation(part, "=", ZERO), [f"max(0,Re {name}) ≥ 0", why], reason="it is not positive")  # fmt: skip
+        b.equal(
+            f"no unstable {name}",
+            Equation(part, "=", ZERO),
+            [f"max(0,Re {name}) ≥ 0", why],
+            reason="it is not positive",
+        )
         total = positive(t, name)
-        b.linked(f"no unstable {name}, summed", Equation(total, "=", Total(ZERO, total.index, total.count)), "sum over", "summed", [f"no unstable {name}"])  # fmt: skip
-    b.state("poles of the open loop", Equation(positive(t, "π'"), "=", unstable(t)), "the stable ones do not count", ["unstable zeros and poles", "no unstable ζ, summed", "no unstable μ, summed"], number="21", source=SOURCE)  # fmt: skip
+        b.linked(
+            f"no unstable {name}, summed",
+            Equation(total, "=", Total(ZERO, total.index, total.count)),
+            "sum over",
+            "summed",
+            [f"no unstable {name}"],
+        )
+    b.state(
+        "poles of the open loop",
+        Equation(positive(t, "π'"), "=", unstable(t)),
+        "the stable ones do not count",
+        ["unstable zeros and poles", "no unstable ζ, summed", "no unstable μ, summed"],
+        number="21",
+        source=SOURCE,
+    )
 
 
 def _derive_theorem(b: SpectrumBuilder) -> None:
@@ -94,12 +126,27 @@ def _derive_theorem(b: SpectrumBuilder) -> None:
     C, V, W, Phi, s, i, m = (t.symbols[k] for k in ("C", "V", "W", "Phi_y", "s", "i", "m"))
     b.heading("Theorem 2: zeros and poles of the spectrum")
     F, G = resolvent(t), resolvent(t, -1)
-    b.state("Popov function over V", Equation(Phi * V.inv, "=", C * F * W * G.T * C.T * V.inv + Identity("l")), "V is invertible", ["Phi_y", "V^-1"], number="u16", source=SOURCE)  # fmt: skip
+    b.state(
+        "Popov function over V",
+        Equation(Phi * V.inv, "=", C * F * W * G.T * C.T * V.inv + Identity("l")),
+        "V is invertible",
+        ["Phi_y", "V^-1"],
+        number="u16",
+        source=SOURCE,
+    )
     product = Product((Det(Phi * V.inv), Det(V)))
-    b.state("determinant of the quotient", Equation(product, "=", Det(Phi)), "the determinant of a product", ["V^-1"], rule="determinant")  # fmt: skip
+    b.state(
+        "determinant of the quotient",
+        Equation(product, "=", Det(Phi)),
+        "the determinant of a product",
+        ["V^-1"],
+        rule="determinant",
+    )
     open_loop, closed = t.symbols["λ"], t.symbols["μ"]
     signed = [[(r, 1), (r, -1)] for r in (closed, open_loop)]
-    first = derive_first_term(b, "spectrum", spectrum_ratio(t), signed[0], signed[1], ZERO, "spectrum by its roots", number="u17")  # fmt: skip
+    first = derive_first_term(
+        b, "spectrum", spectrum_ratio(t), signed[0], signed[1], ZERO, "spectrum by its roots", number="u17"
+    )
     b.say("In lowest terms zeros and poles are fewer, and what cancels leaves both sums alike:")
     b.given("lowest terms")
     at_minus = {n: over_roots(t, t.symbols[n], Neg(s)) for n in ("λ", "μ")}
@@ -117,11 +164,30 @@ def _derive_theorem(b: SpectrumBuilder) -> None:
     b.state("both parts", Equation(Max(a) + Max(Neg(a)), "=", Abs(a)), "both", ["negative part", "modulus"])
     for root in (open_loop, closed):
         re = RealPart(root)
-        b.linked(f"parts of {root.name}", Equation(Max(re) + Max(Neg(re)), "=", Abs(re)), "instance", "for each eigenvalue", ["both parts"])  # fmt: skip
-        b.linked(f"parts of {root.name}, summed", Equation(Total(Max(re) + Max(Neg(re)), i, m), "=", Total(Abs(re), i, m)), "sum over", "summed", [f"parts of {root.name}"])  # fmt: skip
+        b.linked(
+            f"parts of {root.name}",
+            Equation(Max(re) + Max(Neg(re)), "=", Abs(re)),
+            "instance",
+            "for each eigenvalue",
+            ["both parts"],
+        )
+        b.linked(
+            f"parts of {root.name}, summed",
+            Equation(Total(Max(re) + Max(Neg(re)), i, m), "=", Total(Abs(re), i, m)),
+            "sum over",
+            "summed",
+            [f"parts of {root.name}"],
+        )
     difference = positive(t, "φ'") - positive(t, "η'")
     known = ["sums over zeros and poles", "parts of λ, summed", "parts of μ, summed"]
-    b.state("integral by zeros and poles", Equation(whole(b, log_spectrum(t)), "=", first + difference), "proposition 2 for the spectrum", ["log-integral of Phi_y", "first term of spectrum", *known], number="u15", source=SOURCE)  # fmt: skip
+    b.state(
+        "integral by zeros and poles",
+        Equation(whole(b, log_spectrum(t)), "=", first + difference),
+        "proposition 2 for the spectrum",
+        ["log-integral of Phi_y", "first term of spectrum", *known],
+        number="u15",
+        source=SOURCE,
+    )
     b.state(
         "theorem 2", Equation(output_cost(t), "=", difference + 2 * unstable(t)), "theorem 1; the first term is zero",
         ["theorem 1", "integral by zeros and poles", "first term of spectrum"], number="24", source=SOURCE,
@@ -144,7 +210,13 @@ def _derive_bound(b: SpectrumBuilder) -> None:
     b.equal("mirrored part", image, facts, identities=["mirror image"], reason="one of the two parts is zero")
     mirrored = Equation(Max(re) + Max(RealPart(turned)), "=", Abs(re))
     b.state("eigenvalue and mirror image", mirrored, "both", ["mirrored part", "modulus of λ"])
-    b.linked("eigenvalues and mirror images", Equation(Total(mirrored.lhs, i, m), "=", Total(mirrored.rhs, i, m)), "sum over", "summed", ["eigenvalue and mirror image"])  # fmt: skip
+    b.linked(
+        "eigenvalues and mirror images",
+        Equation(Total(mirrored.lhs, i, m), "=", Total(mirrored.rhs, i, m)),
+        "sum over",
+        "summed",
+        ["eigenvalue and mirror image"],
+    )
     total = positive(t, "κ")
     b.sign("cancelled part", Equation(Max(RealPart(kappa)), "≥", ZERO), "a positive part", ["max(0,Re κ) ≥ 0"])
     b.linked("cancelled parts", Equation(total, "≥", ZERO), "sum over", "summed", ["cancelled part"])

@@ -11,7 +11,7 @@ from fractions import Fraction
 
 from derive.context import Theory
 from derive.derivation import Step
-from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Power, Quotient, Rate
+from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Quotient, Rate
 from derive.spectral import At, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
 from derive.terms import Equation, Glyph, Neg, Product, Sum, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
@@ -84,7 +84,11 @@ def declare_family(t: Theory, root: Symbol, *signs: int) -> None:
     for sign, shift in SIDES:
         t.generic(f"distance{sign} {name}", _shifted(w, im, shift), re, w, "except at the frequency of a root")
         t.atom("log", square(_shifted(w, im, shift)) + square(re), f"distance{sign} {name}", f"ln u{sign} {name}")
-        t.atom("spectral", Total(Log(square(_shifted(w, im, shift)) + square(re)), index, count), name=f"sum ln u{sign} {name}")  # fmt: skip
+        t.atom(
+            "spectral",
+            Total(Log(square(_shifted(w, im, shift)) + square(re)), index, count),
+            name=f"sum ln u{sign} {name}",
+        )
     for shift in signs:
         x, key = _shifted(s, re, -shift), f"u(s){'' if shift > 0 else '-'} {name}"
         t.generic(f"distance {key}", x, im, s, "except at a real root")
@@ -133,7 +137,11 @@ def _declare_function(t: Theory) -> None:
     zero, pole = (t.roots(n, i, m, Glyph(n, sub="i"), meaning=f"{w} of f") for n, w in (("φ", "zeros"), ("η", "poles")))
     for root in (zero, pole):
         declare_family(t, root, 1)
-        t.atom("improper", root_integrand(t.symbols["ω"], RealPart(root), ImaginaryPart(root)), name=f"integral of {root.name}")  # fmt: skip
+        t.atom(
+            "improper",
+            root_integrand(t.symbols["ω"], RealPart(root), ImaginaryPart(root)),
+            name=f"integral of {root.name}",
+        )
     p, q, f = (_function(t, n, w) for n, w in (("p", "numerator"), ("q", "denominator"), ("f", "transfer function")))
     t.define("p", p, Roots(s, zero, i, m), "monic, with its zeros")
     t.define("q", q, Roots(s, pole, i, m), "monic of the same order, with the poles")
@@ -196,12 +204,31 @@ def _derive_tail(b: ScalarBuilder, w: Term, a: Term, c: Term, sign: str, k: int)
     u, slope = square(_shifted(w, c, k)) + square(a), 2 * c if k > 0 else -(2 * c)
     ratio, size = Log(u) - Log(square(w)), square(a) + square(c)
     up, down, name = f"ln u{sign} - ln ω^2 ≤", f"ln ω^2 - ln u{sign} ≤", f" ({sign}β)"
-    b.sign("above" + name, Equation(Quotient(slope, w) + Quotient(size, square(w)), "≥", ratio), "ln x ≤ x - 1", [up], squares=[])  # fmt: skip
+    b.sign(
+        "above" + name,
+        Equation(Quotient(slope, w) + Quotient(size, square(w)), "≥", ratio),
+        "ln x ≤ x - 1",
+        [up],
+        squares=[],
+    )
     b.sign("below" + name, Equation(Neg(Quotient(w * slope + size, u)), "≥", -ratio), "ln x ≤ x - 1", [down])
-    b.linked("logarithm" + name, Equation(Limit(ratio, w, Infinity()), "=", ZERO), "squeeze", "between both bounds", ["above" + name, "below" + name])  # fmt: skip
+    b.linked(
+        "logarithm" + name,
+        Equation(Limit(ratio, w, Infinity()), "=", ZERO),
+        "squeeze",
+        "between both bounds",
+        ["above" + name, "below" + name],
+    )
     rest = (3 * square(c) - square(a)) * w + slope * size
-    b.sign("above, times ω" + name, Equation(Quotient(size, w), "≥", w * ratio - slope), "the first bound", [up, "ω > 0"])  # fmt: skip
-    b.sign("below, times ω" + name, Equation(Quotient(rest, u), "≥", slope - w * ratio), "the second bound", [down, "ω > 0"])  # fmt: skip
+    b.sign(
+        "above, times ω" + name, Equation(Quotient(size, w), "≥", w * ratio - slope), "the first bound", [up, "ω > 0"]
+    )
+    b.sign(
+        "below, times ω" + name,
+        Equation(Quotient(rest, u), "≥", slope - w * ratio),
+        "the second bound",
+        [down, "ω > 0"],
+    )
     b.linked(
         "tail" + name, Equation(Limit(w * ratio, w, Infinity()), "=", slope), "squeeze", "both bounds vanish",
         ["above, times ω" + name, "below, times ω" + name],
@@ -266,7 +293,9 @@ def derive_root(b: ScalarBuilder, root: Symbol) -> None:
     """Put each root of a family into the root lemma."""
     w, re, im = b.theory.symbols["ω"], RealPart(root), ImaginaryPart(root)
     half = Definite(root_integrand(w, re, im), w, ZERO, Infinity())
-    b.linked(f"root lemma of {root.name}", Equation(half, "=", 2 * PI * Abs(re)), "instance", "for each root", ["root lemma"])  # fmt: skip
+    b.linked(
+        f"root lemma of {root.name}", Equation(half, "=", 2 * PI * Abs(re)), "instance", "for each root", ["root lemma"]
+    )
 
 
 def scaled(number: Fraction, term: Term) -> Term:
@@ -275,7 +304,7 @@ def scaled(number: Fraction, term: Term) -> Term:
 
 
 def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles: Symbol, by_roots: str) -> Step:
-    """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from the step ``by_roots``; twice that for f = |g|^2."""
+    """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from ``by_roots``; twice that for f = |g|^2."""
     t, part = b.theory, weight(log)
     w, i, m = (t.symbols[k] for k in ("ω", "i", "m"))
     sums = {(r.name, sign): Total(Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))), i, m)
@@ -288,19 +317,43 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
             b.linked(f"conjugates of {root.name}", pair, "conjugate", "complex roots come in conjugate pairs", [])
     pair, conjugates = _pair(w, zeros, poles), [f"conjugates of {r.name}" for r in (zeros, poles)]
     even = Total(pair, i, m)
-    b.state(f"ln {name}, even", Equation(log, "=", part * even), "pairs of conjugates", [f"ln {name} on the axis", *conjugates])
+    b.state(
+        f"ln {name}, even",
+        Equation(log, "=", part * even),
+        "pairs of conjugates",
+        [f"ln {name} on the axis", *conjugates],
+    )
     value = 2 * PI * Abs(RealPart(zeros)) - 2 * PI * Abs(RealPart(poles))
     half: Callable[[Term], Definite] = lambda body: Definite(body, w, ZERO, Infinity())  # noqa: E731
     b.linked(
         f"one root of {name}", Equation(half(pair), "=", value), "linear", "a zero less a pole",
         [f"root lemma of {r.name}" for r in (zeros, poles)],
     )  # fmt: skip
-    b.linked(f"roots of {name}", Equation(half(even), "=", Total(value, i, m)), "sum over", "summed over the roots", [f"one root of {name}"])  # fmt: skip
-    b.linked(f"weighted roots of {name}", Equation(half(part * even), "=", part * Total(value, i, m)), "linear", "times a number", [f"roots of {name}"])  # fmt: skip
-    b.linked(f"half of the axis of {name}", Equation(half(log), "=", half(part * even)), "same argument", "the same integrand", [f"ln {name}, even"])  # fmt: skip
+    b.linked(
+        f"roots of {name}",
+        Equation(half(even), "=", Total(value, i, m)),
+        "sum over",
+        "summed over the roots",
+        [f"one root of {name}"],
+    )
+    b.linked(
+        f"weighted roots of {name}",
+        Equation(half(part * even), "=", part * Total(value, i, m)),
+        "linear",
+        "times a number",
+        [f"roots of {name}"],
+    )
+    b.linked(
+        f"half of the axis of {name}",
+        Equation(half(log), "=", half(part * even)),
+        "same argument",
+        "the same integrand",
+        [f"ln {name}, even"],
+    )
+    moduli = [scaled(2 * part, Total(Abs(RealPart(r)), i, m)) for r in (zeros, poles)]
     return b.state(
         f"log-integral of {name}",
-        Equation(whole(b, log), "=", scaled(2 * part, Total(Abs(RealPart(zeros)), i, m)) - scaled(2 * part, Total(Abs(RealPart(poles)), i, m))),
+        Equation(whole(b, log), "=", moduli[0] - moduli[1]),
         "the integrand is even", [f"half of the axis of {name}", f"weighted roots of {name}"],
     )  # fmt: skip
 
@@ -319,11 +372,16 @@ def whole(b: ScalarBuilder, body: Term) -> Term:
 # ------------------------------------------------------------------------------------------------ propositions 1 and 2
 def _derive_function(b: ScalarBuilder) -> None:
     t = b.theory
-    f, p, q, s, zero, pole, i, m = (t.symbols[k] for k in ("f", "p", "q", "s", "φ", "η", "i", "m"))
+    f, s, zero, pole, i, m = (t.symbols[k] for k in ("f", "s", "φ", "η", "i", "m"))
     b.heading("A counterpart of Jensen's formula")
     b.say("Let f have numerator and denominator of the same order, with real coefficients, and let it tend to 1:")
     b.given("p", "q", "f", "f tends to 1", numbers=("", "", "5", "6"), source=SOURCE)
-    b.state("f by its roots", Equation(f, "=", Quotient(Roots(s, zero, i, m), Roots(s, pole, i, m))), "both definitions", ["f", "p", "q"])  # fmt: skip
+    b.state(
+        "f by its roots",
+        Equation(f, "=", Quotient(Roots(s, zero, i, m), Roots(s, pole, i, m))),
+        "both definitions",
+        ["f", "p", "q"],
+    )
     for root in (zero, pole):
         derive_root(b, root)
         derive_family(b, root, reals=1)
@@ -335,8 +393,14 @@ def _derive_function(b: ScalarBuilder) -> None:
     b.given("poles are stable")
     stable = Equation(Abs(RealPart(pole)), "=", Neg(RealPart(pole)))
     b.equal("stable poles", stable, [f"|Re {pole.name}| ≥ 0", "poles are stable"], reason="the real part is negative")
-    b.linked("stable poles, summed", Equation(Total(stable.lhs, i, m), "=", Total(stable.rhs, i, m)), "sum over", "summed over the poles", ["stable poles"])  # fmt: skip
-    integral, zeros, poles = whole(b, on_axis(t, f)), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)  # fmt: skip
+    b.linked(
+        "stable poles, summed",
+        Equation(Total(stable.lhs, i, m), "=", Total(stable.rhs, i, m)),
+        "sum over",
+        "summed over the poles",
+        ["stable poles"],
+    )
+    integral, zeros, poles = whole(b, on_axis(t, f)), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)
     known = ["log-integral of f", "first term of f", "modulus of φ, summed"]
     b.state(
         "proposition 1", Equation(integral, "=", first + zeros), "|x| = 2 max(0, x) - x, summed over the zeros",
@@ -373,10 +437,29 @@ def derive_first_term(
     log = Log(Modulus(At(function, s, s)))
     signed = [*((r, k, 1) for r, k in zeros), *((r, k, -1) for r, k in poles)]
     logs = [Neg(HALF * _along(b, r, k)) if side < 0 else HALF * _along(b, r, k) for r, k, side in signed]
-    b.linked(f"ln|{name}| along the reals", Equation(log, "=", Sum(tuple(logs))), "modulus", "the modulus of a product", [by_roots])  # fmt: skip
+    b.linked(
+        f"ln|{name}| along the reals",
+        Equation(log, "=", Sum(tuple(logs))),
+        "modulus",
+        "the modulus of a product",
+        [by_roots],
+    )
     decay = [QUARTER * Total(s * (_along(b, r, k).body - Log(square(s))), i, m) for r, k, _ in signed]
     decays = Sum(tuple(Neg(d) if side < 0 else d for d, (_, _, side) in zip(decay, signed, strict=True)))
-    b.state(f"s ln|{name}|", Equation(HALF * s * log, "=", decays), "the terms with ln s² cancel", [f"ln|{name}| along the reals"])  # fmt: skip
+    b.state(
+        f"s ln|{name}|",
+        Equation(HALF * s * log, "=", decays),
+        "the terms with ln s² cancel",
+        [f"ln|{name}| along the reals"],
+    )
     first = Limit(HALF * s * log, s, Infinity())
-    b.linked(f"first term of {name}", Equation(first, "=", limit), "same argument", "root by root", [f"s ln|{name}|"], number=number, source=SOURCE if number else "")  # fmt: skip
+    b.linked(
+        f"first term of {name}",
+        Equation(first, "=", limit),
+        "same argument",
+        "root by root",
+        [f"s ln|{name}|"],
+        number=number,
+        source=SOURCE if number else "",
+    )
     return first

@@ -25,8 +25,8 @@ from derive.theory.spectrum_roots import HALF, SOURCE, axis, over_roots, whole
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(t: Theory) -> None:
     """Declare the bounds and the special cases."""
-    A, C, W, V, P, K, Phi, L = (t.symbols[k] for k in ("A", "C", "W", "V", "P", "K", "Phi_y", "L"))
-    I, size, s = Identity("l"), Identity("m"), t.symbols["s"]
+    C, W, V, P, K, Phi, L = (t.symbols[k] for k in ("C", "W", "V", "P", "K", "Phi_y", "L"))
+    one, size, s = Identity("l"), Identity("m"), t.symbols["s"]
     t.assume("P >= 0", P, "⪰", Zero("m", "m"), "a covariance")
     low, high = (
         t.scalar(n, Glyph("λ", sub=k), nonnegative=True, meaning=f"{w} eigenvalue of C'V^-1C")
@@ -46,10 +46,10 @@ def declare(t: Theory) -> None:
     variance = t.scalar("σ_v^2", Glyph("σ", sub="v", sup="2"), nonnegative=True, meaning="intensity of one noise")
     t.assume("σ_v^2 > 0", variance, ">", text="the output is noisy")
     t.atom("reciprocal", variance, "σ_v^2 > 0", "1/σ_v^2")
-    t.fact("l = 1", "single", I, "one output", case=True)
-    t.assume("V = σ_v^2", V, "=", variance * I, "one intensity", case=True)
+    t.fact("l = 1", "single", one, "one output", case=True)
+    t.assume("V = σ_v^2", V, "=", variance * one, "one intensity", case=True)
     t.assume("σ_v^2 = 1", variance, "=", ONE, "unit intensity", case=True)
-    t.assume("V = I", V, "=", I, "unit intensity", case=True)
+    t.assume("V = I", V, "=", one, "unit intensity", case=True)
     t.assume("W = 0", W, "=", Zero("m", "m"), "no process noise", case=True)
     B = t.matrix("B", "m", "1", meaning="input of one process noise")
     t.assume("W = BB'", W, "=", B * B.T, "one process noise of unit intensity", case=True)
@@ -72,7 +72,6 @@ def declare(t: Theory) -> None:
     bode = Quotient(ONE, ONE + Entry(L))
     t.atom("spectral", on_axis(t, bode), name="ln|1/(1+L)|")
     t.atom("improper", on_axis(t, bode), name="integral of ln|1/(1+L)|")
-    del A
 
 
 def response(t: Theory) -> Product:
@@ -111,9 +110,21 @@ def _relog(b: SpectrumBuilder, name: str, reason: str, using: Sequence[str]) -> 
     ratio, old, w = ratios(t)[name], spectrum_ratio(t), t.symbols["ω"]
     log = Log(At(ratio, t.symbols["s"], axis(t)))
     b.state(f"spectrum: {name}", Equation(ratio, "=", old), reason, using)
-    b.linked(f"logarithm: {name}", Equation(log, "=", log_spectrum(t)), "same argument", "the same function", [f"spectrum: {name}"])  # fmt: skip
+    b.linked(
+        f"logarithm: {name}",
+        Equation(log, "=", log_spectrum(t)),
+        "same argument",
+        "the same function",
+        [f"spectrum: {name}"],
+    )
     halves = [Definite(x, w, ZERO, Infinity()) for x in (log, log_spectrum(t))]
-    b.linked(f"integral: {name}", Equation(halves[0], "=", halves[1]), "same argument", "the same integrand", [f"logarithm: {name}"])  # fmt: skip
+    b.linked(
+        f"integral: {name}",
+        Equation(halves[0], "=", halves[1]),
+        "same argument",
+        "the same integrand",
+        [f"logarithm: {name}"],
+    )
     return whole(b, log)
 
 
@@ -123,27 +134,80 @@ def _derive_feedback(b: SpectrumBuilder) -> None:
     bode, sensitivity = Quotient(ONE, Det(Identity("l") + L)), Quotient(ONE, Det(factor(t)))
     logs = [Log(Modulus(At(f, s, s))) for f in (bode, sensitivity)]
     b.heading("The Bode integral: one output, and a faster roll-off")
-    b.linked("return difference along the reals", Equation(logs[0], "=", logs[1]), "same argument", "the same function", ["return difference"])  # fmt: skip
-    b.state("s ln|1/det(I+L)|", Equation(s * logs[0], "=", s * logs[1]), "the same", ["return difference along the reals"])  # fmt: skip
+    b.linked(
+        "return difference along the reals",
+        Equation(logs[0], "=", logs[1]),
+        "same argument",
+        "the same function",
+        ["return difference"],
+    )
+    b.state(
+        "s ln|1/det(I+L)|", Equation(s * logs[0], "=", s * logs[1]), "the same", ["return difference along the reals"]
+    )
     roots = [Total(RealPart(t.symbols[n]), t.symbols["i"], t.symbols["m"]) for n in ("μ", "λ")]
     first = Limit(s * logs[0], s, Infinity())
-    b.linked("roll-off by roots", Equation(first, "=", roots[0] - roots[1]), "same argument", "as for the sensitivity", ["s ln|1/det(I+L)|"])  # fmt: skip
+    b.linked(
+        "roll-off by roots",
+        Equation(first, "=", roots[0] - roots[1]),
+        "same argument",
+        "as for the sensitivity",
+        ["s ln|1/det(I+L)|"],
+    )
     b.say("This limit is zero exactly where the output error is, so for a filter it needs more than detectability:")
-    b.state("roll-off", Equation(first, "=", Neg(output_cost(t))), "the trace of A - KC", ["roll-off by roots", "trace by λ", "trace by μ", "trace of KC"])  # fmt: skip
+    b.state(
+        "roll-off",
+        Equation(first, "=", Neg(output_cost(t))),
+        "the trace of A - KC",
+        ["roll-off by roots", "trace by λ", "trace by μ", "trace of KC"],
+    )
     b.given("CK = 0")
-    b.state("no slope", Equation(Trace(C * K), "=", Trace(Zero("l", "l"))), "sL(s) tends to CK", ["CK = 0"], rule="trace")  # fmt: skip
-    b.state("fast roll-off", Equation(first, "=", ZERO), "then tr CK = 0", ["trace by λ", "trace by μ", "trace of KC", "no slope", "trace of CK"], number="23", source=SOURCE)  # fmt: skip
+    b.state(
+        "no slope", Equation(Trace(C * K), "=", Trace(Zero("l", "l"))), "sL(s) tends to CK", ["CK = 0"], rule="trace"
+    )
+    b.state(
+        "fast roll-off",
+        Equation(first, "=", ZERO),
+        "then tr CK = 0",
+        ["trace by λ", "trace by μ", "trace of KC", "no slope", "trace of CK"],
+        number="23",
+        source=SOURCE,
+    )
     single = Quotient(ONE, ONE + Entry(L))
     b.say("For one output a determinant is the number itself:")
     b.linked("det of one entry", Equation(Det(Identity("l") + L), "=", Entry(Identity("l") + L)), "single", "l = 1", [])
-    b.sign("1 + L is regular", Equation(ONE + Entry(L), "≠", ZERO), "as before", ["product u(s) μ ≠ 0"], identities=["det of one entry", "factor by its roots", "det(I + L)"])  # fmt: skip
+    b.sign(
+        "1 + L is regular",
+        Equation(ONE + Entry(L), "≠", ZERO),
+        "as before",
+        ["product u(s) μ ≠ 0"],
+        identities=["det of one entry", "factor by its roots", "det(I + L)"],
+    )
     b.state("one return difference", Equation(single, "=", bode), "l = 1", ["det of one entry"])
-    b.linked("ln of one return difference", Equation(on_axis(t, single), "=", on_axis(t, bode)), "same argument", "the same function", ["one return difference"])  # fmt: skip
+    b.linked(
+        "ln of one return difference",
+        Equation(on_axis(t, single), "=", on_axis(t, bode)),
+        "same argument",
+        "the same function",
+        ["one return difference"],
+    )
     w = t.symbols["ω"]
     halves = [Definite(on_axis(t, f), w, ZERO, Infinity()) for f in (single, bode)]
-    b.linked("integral of one return difference", Equation(halves[0], "=", halves[1]), "same argument", "the same integrand", ["ln of one return difference"])  # fmt: skip
+    b.linked(
+        "integral of one return difference",
+        Equation(halves[0], "=", halves[1]),
+        "same argument",
+        "the same integrand",
+        ["ln of one return difference"],
+    )
     slope = Limit(HALF * s * Entry(L), s, Infinity())
-    b.state("Bode integral of one output", Equation(whole(b, on_axis(t, single)), "=", Neg(slope) + unstable(t)), "(20) for l = 1", ["Bode integral of L", "integral of one return difference", "limit of s tr L"], number="22", source=SOURCE)  # fmt: skip
+    b.state(
+        "Bode integral of one output",
+        Equation(whole(b, on_axis(t, single)), "=", Neg(slope) + unstable(t)),
+        "(20) for l = 1",
+        ["Bode integral of L", "integral of one return difference", "limit of s tr L"],
+        number="22",
+        source=SOURCE,
+    )
 
 
 def _derive_bounds(b: SpectrumBuilder) -> None:
@@ -153,12 +217,40 @@ def _derive_bounds(b: SpectrumBuilder) -> None:
     b.heading("Bounds on the trace of the error covariance")
     b.given("P >= 0", "least eigenvalue", "largest eigenvalue")
     for name, matrix, fact in (
-        ("below", information - low * size, "least eigenvalue"), ("above", high * size - information, "largest eigenvalue")
-    ):  # fmt: skip
-        b.positive_number(f"trace {name}", Equation(Trace(matrix * P), "≥", ZERO), "the trace of a product of nonnegative matrices", [fact, "P >= 0"])  # fmt: skip
-    b.sign("lower bound", Equation(cost, "≥", low * Trace(P)), "the trace is linear and cyclic", ["trace below"], number="26", source=SOURCE)  # fmt: skip
-    b.state("symmetric form", Equation(cost, "=", Trace(root.inv * C * P * C.T * root.inv)), "the trace is cyclic", ["root of V", "V^-1", "V^-1/2"], rule="trace", number="26", source=SOURCE)  # fmt: skip
-    b.sign("upper bound", Equation(high * Trace(P), "≥", cost), "the trace is linear and cyclic", ["trace above"], number="26", source=SOURCE)  # fmt: skip
+        ("below", information - low * size, "least eigenvalue"),
+        ("above", high * size - information, "largest eigenvalue"),
+    ):
+        b.positive_number(
+            f"trace {name}",
+            Equation(Trace(matrix * P), "≥", ZERO),
+            "the trace of a product of nonnegative matrices",
+            [fact, "P >= 0"],
+        )
+    b.sign(
+        "lower bound",
+        Equation(cost, "≥", low * Trace(P)),
+        "the trace is linear and cyclic",
+        ["trace below"],
+        number="26",
+        source=SOURCE,
+    )
+    b.state(
+        "symmetric form",
+        Equation(cost, "=", Trace(root.inv * C * P * C.T * root.inv)),
+        "the trace is cyclic",
+        ["root of V", "V^-1", "V^-1/2"],
+        rule="trace",
+        number="26",
+        source=SOURCE,
+    )
+    b.sign(
+        "upper bound",
+        Equation(high * Trace(P), "≥", cost),
+        "the trace is linear and cyclic",
+        ["trace above"],
+        number="26",
+        source=SOURCE,
+    )
     value = whole(b, log_spectrum(t)) + 2 * unstable(t)
     b.say("The first bound needs C ≠ 0, the second full column rank of C:")
     for name, number, fact, bound, left, right in (
@@ -167,61 +259,149 @@ def _derive_bounds(b: SpectrumBuilder) -> None:
     ):
         scale = high if number == "27" else low
         b.given(fact)
-        b.sign(f"1/{fact}", Equation(Quotient(ONE, scale), ">", ZERO), "a reciprocal has the sign of its number", [fact])  # fmt: skip
-        b.sign(name, Equation(left, "≥", right), "theorem 1", [bound, f"1/{fact}"], identities=["theorem 1"], alone=False, number=number, source=SOURCE)  # fmt: skip
+        b.sign(
+            f"1/{fact}", Equation(Quotient(ONE, scale), ">", ZERO), "a reciprocal has the sign of its number", [fact]
+        )
+        b.sign(
+            name,
+            Equation(left, "≥", right),
+            "theorem 1",
+            [bound, f"1/{fact}"],
+            identities=["theorem 1"],
+            alone=False,
+            number=number,
+            source=SOURCE,
+        )
 
 
 def _derive_one_output(b: SpectrumBuilder) -> None:
     t = b.theory
     C, P, V, Phi, W, Sigma, variance = (t.symbols[k] for k in ("C", "P", "V", "Phi_y", "W", "Sigma", "σ_v^2"))
-    error, I = C * P * C.T, Identity("l")
+    error, one = C * P * C.T, Identity("l")
     b.heading("Corollary 1: one output")
     b.given("V = σ_v^2")
-    b.state("spectrum of one output", Equation(Phi, "=", C * resolvent(t) * W * resolvent(t, -1).T * C.T + variance * I), "V is a number", ["Phi_y", "V = σ_v^2"], number="30", source=SOURCE)  # fmt: skip
-    b.state("cost of one output", Equation(Trace(variance * (error * V.inv)), "=", Trace(error)), "V is a number", ["V = σ_v^2", "V^-1"], rule="trace")  # fmt: skip
-    b.state("V of one output", Equation(Entry(V), "=", Entry(variance * I)), "V is a number", ["V = σ_v^2"], rule="apply")
+    b.state(
+        "spectrum of one output",
+        Equation(Phi, "=", C * resolvent(t) * W * resolvent(t, -1).T * C.T + variance * one),
+        "V is a number",
+        ["Phi_y", "V = σ_v^2"],
+        number="30",
+        source=SOURCE,
+    )
+    b.state(
+        "cost of one output",
+        Equation(Trace(variance * (error * V.inv)), "=", Trace(error)),
+        "V is a number",
+        ["V = σ_v^2", "V^-1"],
+        rule="trace",
+    )
+    b.state(
+        "V of one output", Equation(Entry(V), "=", Entry(variance * one)), "V is a number", ["V = σ_v^2"], rule="apply"
+    )
     for name, matrix in (("Phi_y", Phi), ("V", V)):
         b.linked(f"det {name} of one output", Equation(Det(matrix), "=", Entry(matrix)), "single", "l = 1", [])
     integral = _relog(b, "one output", "l = 1", ["det Phi_y of one output", "det V of one output", "V of one output"])
-    b.state("variance of one output", Equation(Entry(Sigma), "=", Entry(error)), "equation (4)", ["output error covariance"], rule="apply", number="29", source=SOURCE)  # fmt: skip
+    b.state(
+        "variance of one output",
+        Equation(Entry(Sigma), "=", Entry(error)),
+        "equation (4)",
+        ["output error covariance"],
+        rule="apply",
+        number="29",
+        source=SOURCE,
+    )
     right = variance * integral + 2 * variance * unstable(t)
-    b.state("corollary 1", Equation(Entry(error), "=", right), "theorem 1 times the intensity", ["theorem 1", "cost of one output", "integral: one output"], number="29", source=SOURCE)  # fmt: skip
+    b.state(
+        "corollary 1",
+        Equation(Entry(error), "=", right),
+        "theorem 1 times the intensity",
+        ["theorem 1", "cost of one output", "integral: one output"],
+        number="29",
+        source=SOURCE,
+    )
 
 
 def _derive_stable(b: SpectrumBuilder) -> None:
     t = b.theory
-    C, P, V, Phi, Phi_z, Sigma, variance, root = (t.symbols[k] for k in ("C", "P", "V", "Phi_y", "Phi_z", "Sigma", "σ_v^2", "λ"))  # fmt: skip
-    i, m, error = t.symbols["i"], t.symbols["m"], C * P * C.T
+    C, P, V, Phi, Phi_z, Sigma, variance, root = (
+        t.symbols[k] for k in ("C", "P", "V", "Phi_y", "Phi_z", "Sigma", "σ_v^2", "λ")
+    )
+    i, m = t.symbols["i"], t.symbols["m"]
     b.heading("A stable plant")
     b.given("A stable", "Phi_z")
-    b.equal("no unstable λ", Equation(Max(RealPart(root)), "=", ZERO), ["max(0,Re λ) ≥ 0", "A stable"], reason="it is not positive")  # fmt: skip
-    b.linked("no unstable λ, summed", Equation(unstable(t), "=", Total(ZERO, i, m)), "sum over", "summed", ["no unstable λ"])  # fmt: skip
+    b.equal(
+        "no unstable λ",
+        Equation(Max(RealPart(root)), "=", ZERO),
+        ["max(0,Re λ) ≥ 0", "A stable"],
+        reason="it is not positive",
+    )
+    b.linked(
+        "no unstable λ, summed", Equation(unstable(t), "=", Total(ZERO, i, m)), "sum over", "summed", ["no unstable λ"]
+    )
     b.state("signal and noise", Equation(Phi, "=", Phi_z + V), "definition", ["Phi_y", "Phi_z"])
-    b.state("signal and noise of one output", Equation(Entry(Phi), "=", Entry(Phi_z + V)), "definition", ["Phi_y", "Phi_z"], rule="apply")  # fmt: skip
+    b.state(
+        "signal and noise of one output",
+        Equation(Entry(Phi), "=", Entry(Phi_z + V)),
+        "definition",
+        ["Phi_y", "Phi_z"],
+        rule="apply",
+    )
     known = ["det Phi_y of one output", "det V of one output", "V of one output", "signal and noise of one output"]
     integral = _relog(b, "one stable output", "the spectrum is that of the signal and of the noise", known)
     stable = ["corollary 1", "no unstable λ, summed", "integral: one output"]
-    b.state("Yovits-Jackson formula", Equation(Entry(Sigma), "=", variance * integral), "corollary 1 without unstable poles", [*stable, "variance of one output", "integral: one stable output"], number="33", source=SOURCE)  # fmt: skip
-    b.state("determinant of signal and noise", Equation(Det(Phi_z + V), "=", Det(Phi)), "the same matrix", ["signal and noise"], rule="determinant")  # fmt: skip
+    b.state(
+        "Yovits-Jackson formula",
+        Equation(Entry(Sigma), "=", variance * integral),
+        "corollary 1 without unstable poles",
+        [*stable, "variance of one output", "integral: one stable output"],
+        number="33",
+        source=SOURCE,
+    )
+    b.state(
+        "determinant of signal and noise",
+        Equation(Det(Phi_z + V), "=", Det(Phi)),
+        "the same matrix",
+        ["signal and noise"],
+        rule="determinant",
+    )
     several = _relog(b, "stable plant", "the same matrix", ["determinant of signal and noise"])
     cost = Trace(Sigma * V.inv)
-    b.state("stable plant", Equation(cost, "=", whole(b, log_spectrum(t))), "theorem 1 without unstable poles", ["theorem 1", "output error", "no unstable λ, summed"], number="39", source=SOURCE)  # fmt: skip
-    b.state("Wiener-Masani formula", Equation(cost, "=", several), "signal and noise", ["stable plant", "integral: stable plant"], number="39", source=SOURCE)  # fmt: skip
-    del error
+    b.state(
+        "stable plant",
+        Equation(cost, "=", whole(b, log_spectrum(t))),
+        "theorem 1 without unstable poles",
+        ["theorem 1", "output error", "no unstable λ, summed"],
+        number="39",
+        source=SOURCE,
+    )
+    b.state(
+        "Wiener-Masani formula",
+        Equation(cost, "=", several),
+        "signal and noise",
+        ["stable plant", "integral: stable plant"],
+        number="39",
+        source=SOURCE,
+    )
 
 
 def _derive_one_input(b: SpectrumBuilder) -> None:
     t = b.theory
     C, P, Phi, V = (t.symbols[k] for k in ("C", "P", "Phi_y", "V"))
-    I, product = Identity("l"), response(t)
+    product = response(t)
     b.heading("One noise, one output")
     b.given("W = BB'", "σ_v^2 = 1")
     b.say("The squared modulus of the response is the response times its mirror image:")
     b.state("response", Equation(Entry(Phi), "=", Entry(product + V)), "definition", ["Phi_y", "W = BB'"], rule="apply")
     known = ["det Phi_y of one output", "det V of one output", "V of one output", "response", "σ_v^2 = 1"]
     integral = _relog(b, "one input and output", "both intensities are one", known)
-    b.state("one input and output", Equation(Entry(C * P * C.T), "=", integral + 2 * unstable(t)), "corollary 1", ["theorem 1", "cost of one output", "σ_v^2 = 1", "integral: one input and output"], number="34", source=SOURCE)  # fmt: skip
-    del I
+    b.state(
+        "one input and output",
+        Equation(Entry(C * P * C.T), "=", integral + 2 * unstable(t)),
+        "corollary 1",
+        ["theorem 1", "cost of one output", "σ_v^2 = 1", "integral: one input and output"],
+        number="34",
+        source=SOURCE,
+    )
 
 
 def _derive_no_noise(b: SpectrumBuilder) -> None:
@@ -230,24 +410,85 @@ def _derive_no_noise(b: SpectrumBuilder) -> None:
     b.heading("No process noise")
     b.say("The closed loop then has the eigenvalues of A, the unstable ones mirrored:")
     b.given("W = 0")
-    b.state("no signal", Equation(Det(Phi), "=", Det(V)), "only the measurement noise is left", ["Phi_y", "W = 0"], rule="determinant")  # fmt: skip
+    b.state(
+        "no signal",
+        Equation(Det(Phi), "=", Det(V)),
+        "only the measurement noise is left",
+        ["Phi_y", "W = 0"],
+        rule="determinant",
+    )
     closed, opened = (Product(tuple(over_roots(t, t.symbols[n], x) for x in (s, Neg(s)))) for n in ("μ", "λ"))
-    b.state("mirrored eigenvalues", Equation(closed, "=", opened), "multiply out", ["spectrum by its roots", "no signal"])
-    sums = [Total(Max(RealPart(t.symbols[n])), i, m) + Total(Max(Neg(RealPart(t.symbols[n]))), i, m) for n in ("μ", "λ")]
-    b.linked("mirrored sums", Equation(sums[0], "=", sums[1]), "same roots", "equal polynomials have equal roots", ["mirrored eigenvalues"])  # fmt: skip
-    b.state("cost without process noise", Equation(output_cost(t), "=", 2 * unstable(t)), "the trace of A - KC", ["mirrored sums", "parts of λ, summed", "parts of μ, summed", "closed loop, summed", "modulus of λ, summed", "trace by λ", "trace by μ", "trace of KC"])  # fmt: skip
-    b.state("error without process noise", Equation(Entry(C * P * C.T), "=", 2 * unstable(t)), "one output of unit intensity", ["cost without process noise", "cost of one output", "σ_v^2 = 1"], number="36", source=SOURCE)  # fmt: skip
+    b.state(
+        "mirrored eigenvalues", Equation(closed, "=", opened), "multiply out", ["spectrum by its roots", "no signal"]
+    )
+    sums = [
+        Total(Max(RealPart(t.symbols[n])), i, m) + Total(Max(Neg(RealPart(t.symbols[n]))), i, m) for n in ("μ", "λ")
+    ]
+    b.linked(
+        "mirrored sums",
+        Equation(sums[0], "=", sums[1]),
+        "same roots",
+        "equal polynomials have equal roots",
+        ["mirrored eigenvalues"],
+    )
+    b.state(
+        "cost without process noise",
+        Equation(output_cost(t), "=", 2 * unstable(t)),
+        "the trace of A - KC",
+        [
+            "mirrored sums",
+            "parts of λ, summed",
+            "parts of μ, summed",
+            "closed loop, summed",
+            "modulus of λ, summed",
+            "trace by λ",
+            "trace by μ",
+            "trace of KC",
+        ],
+    )
+    b.state(
+        "error without process noise",
+        Equation(Entry(C * P * C.T), "=", 2 * unstable(t)),
+        "one output of unit intensity",
+        ["cost without process noise", "cost of one output", "σ_v^2 = 1"],
+        number="36",
+        source=SOURCE,
+    )
 
 
 def _derive_unit(b: SpectrumBuilder) -> None:
     t = b.theory
     C, P, V, W, Phi, Sigma = (t.symbols[k] for k in ("C", "P", "V", "W", "Phi_y", "Sigma"))
-    I, error = Identity("l"), C * P * C.T
+    one, error = Identity("l"), C * P * C.T
     b.heading("Unit noise intensity")
     b.given("V = I")
-    b.state("unit cost", Equation(output_cost(t), "=", Trace(error)), "V is the identity", ["V = I", "V^-1"], rule="trace")
-    b.state("unit determinant", Equation(Det(V), "=", Det(I)), "V is the identity", ["V = I"], rule="determinant")
-    b.state("trace of the output error", Equation(Trace(Sigma), "=", Trace(error)), "equation (4)", ["output error covariance"], rule="trace", number="37", source=SOURCE)  # fmt: skip
+    b.state(
+        "unit cost", Equation(output_cost(t), "=", Trace(error)), "V is the identity", ["V = I", "V^-1"], rule="trace"
+    )
+    b.state("unit determinant", Equation(Det(V), "=", Det(one)), "V is the identity", ["V = I"], rule="determinant")
+    b.state(
+        "trace of the output error",
+        Equation(Trace(Sigma), "=", Trace(error)),
+        "equation (4)",
+        ["output error covariance"],
+        rule="trace",
+        number="37",
+        source=SOURCE,
+    )
     integral = _relog(b, "unit intensity", "V is the identity", ["unit determinant"])
-    b.state("unit intensity", Equation(Trace(error), "=", integral + 2 * unstable(t)), "theorem 1", ["theorem 1", "unit cost", "integral: unit intensity"], number="37", source=SOURCE)  # fmt: skip
-    b.state("spectrum with unit intensity", Equation(Phi, "=", C * resolvent(t) * W * resolvent(t, -1).T * C.T + I), "V is the identity", ["Phi_y", "V = I"], number="38", source=SOURCE)  # fmt: skip
+    b.state(
+        "unit intensity",
+        Equation(Trace(error), "=", integral + 2 * unstable(t)),
+        "theorem 1",
+        ["theorem 1", "unit cost", "integral: unit intensity"],
+        number="37",
+        source=SOURCE,
+    )
+    b.state(
+        "spectrum with unit intensity",
+        Equation(Phi, "=", C * resolvent(t) * W * resolvent(t, -1).T * C.T + one),
+        "V is the identity",
+        ["Phi_y", "V = I"],
+        number="38",
+        source=SOURCE,
+    )
