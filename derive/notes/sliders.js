@@ -179,15 +179,12 @@ function apart(heights) {
 
 /** Return a curve as a path, interrupted where it is not defined or has left the frame. */
 function line(points, x, y, max) {
-  let pen = "M";
+  const inside = (i) => points[i] !== undefined && points[i][1] <= max;
   return points
     .map(([u, v], i) => {
-      const outside = !(v <= max);
-      const next = points[i + 1];
-      const enters = outside && next && next[1] <= max;
-      const command = Number.isNaN(v) || (outside && pen === "M" && !enters) ? "" : `${pen}${x(u)} ${y(v)}`;
-      pen = outside && !enters ? "M" : "L";
-      return command;
+      if (Number.isNaN(v) || !(inside(i - 1) || inside(i) || inside(i + 1))) return "";
+      const joined = i > 0 && !Number.isNaN(points[i - 1][1]) && (inside(i - 1) || inside(i));
+      return `${joined ? "L" : "M"}${x(u)} ${y(v)}`;
     })
     .join("");
 }
