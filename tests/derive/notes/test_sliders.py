@@ -273,10 +273,10 @@ def test_the_script_is_what_the_formulas_export(page, panels):
 DOCUMENT = """
 const elements = %s;
 function element(a) {
-  return {...a, dataset: Object.fromEntries(Object.entries(a).filter(([k]) => k.startsWith("data-")).map(
-      ([k, v]) => [k.slice(5), v])), defaultValue: a.value, attributes: {}, textContent: "", innerHTML: "", listeners: {},
-    setAttribute(k, v) { this.attributes[k] = v; }, addEventListener(k, f) { this.listeners[k] = f; },
-    classes: {}, classList: {toggle: () => 0}};
+  const dataset = Object.fromEntries(
+    Object.entries(a).filter(([k]) => k.startsWith("data-")).map(([k, v]) => [k.slice(5), v]));
+  return {...a, dataset, defaultValue: a.value, attributes: {}, listeners: {}, classList: {toggle: () => 0},
+    setAttribute(k, v) { this.attributes[k] = v; }, addEventListener(k, f) { this.listeners[k] = f; }};
 }
 const forms = elements.map(({form, parts}) => {
   const made = parts.map(([tag, a]) => [tag, element(a)]);
