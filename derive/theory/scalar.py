@@ -16,10 +16,13 @@ from derive.theory import (
     scalar_continuous,
     scalar_cross,
     scalar_discrete,
+    scalar_instances,
     scalar_integral,
     scalar_limits,
     scalar_recursion,
     scalar_regulator,
+    scalar_second,
+    scalar_third,
     scalar_transient,
 )
 from derive.theory.scalar_builder import ScalarBuilder
@@ -27,7 +30,7 @@ from derive.theory.scalar_builder import ScalarBuilder
 KEY, THEORY = "scalar", "scalar"
 PARTS = (
     scalar_continuous, scalar_transient, scalar_discrete, scalar_recursion, scalar_bounds, scalar_cross,
-    scalar_regulator, scalar_limits, scalar_integral,
+    scalar_regulator, scalar_limits, scalar_integral, scalar_second, scalar_instances, scalar_third,
 )  # fmt: skip
 
 

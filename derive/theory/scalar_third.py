@@ -308,7 +308,7 @@ def _derive_integrator(b: ScalarBuilder) -> None:
     b.given(*cases, three("r > 0"), three("W3 = V r^6"))
     plant = [three(f"plant c{i}") for i in (0, 2, 4)]
     known = [*plant, *cases]
-    b.state(three("c0 = r^6"), Equation(c0, "=", Power(r, 6)), "the rate", [*known, three("W3 = V r^6")])
+    b.state(three("c0 = r^6"), Equation(c0, "=", Power(r, 6)), "the rate", [plant[0], *cases, three("W3 = V r^6")])
     b.sign(three("r^2 > 0"), Equation(square(r), ">", ZERO), "a square", [three("r > 0")])
     b.sign(three("r^3 > 0"), Equation(Power(r, 3), ">", ZERO), "a product", [three("r > 0"), three("r^2 > 0")])
     a0_is, root = three("a0 = r^3"), [three("root of c0"), three("a0"), three("c0 = r^6")]

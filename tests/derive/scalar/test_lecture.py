@@ -20,6 +20,7 @@ from derive.real import atom_relation, scalars_of
 from derive.replay import verify_file
 from derive.terms import Equation, Neg, Number, Zero
 from derive.theory import lecture
+from tests.derive.scalar.witnesses import POSITIVE, assigned
 
 ZERO = Zero("", "")
 ATOMS = {
@@ -63,12 +64,15 @@ class Point:
             self.known["σ"] = 0.0
         if "A < 0" in cases:
             self.known["A"] = -rng.random() - 0.1
+        self.assigned = assigned(cases)
 
     def scalar(self, name: str) -> float:
         if name not in self.known:
             atom = self.real.atoms.get(name)
-            if atom is None:
-                positive = name in ("V", "R", "W", "Q", "P0", "P1", "t", "ω", "σ")
+            if name in self.assigned:
+                self.known[name] = self.assigned[name](self.scalar)
+            elif atom is None:
+                positive = name in ("V", "R", "W", "Q", "P0", "P1", "t", "ω", "σ") or name in POSITIVE
                 self.known[name] = self.rng.uniform(0.1, 2) if positive else self.rng.uniform(-2, 2)
             elif atom.kind in ("integral", "improper"):
                 self.known[name] = self.integral(atom)
