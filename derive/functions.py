@@ -32,7 +32,20 @@ from derive.real import (
     reflect,
     scalar,
 )
-from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
+from derive.spectral import (
+    At,
+    Conjugate,
+    Det,
+    Distance,
+    Entry,
+    ImaginaryPart,
+    Modulus,
+    RealPart,
+    Roots,
+    TimesArctan,
+    TimesLog,
+    Total,
+)
 from derive.terms import Equation, MissingInverse, Neg, Number, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower
 
 PI = Symbol(CIRCLE, scalar=True)
@@ -224,6 +237,8 @@ def _spectral(term: Term, reading: Reading) -> Poly:
             return scalar(_family(root, reading).real)
         case ImaginaryPart(root):
             return scalar(_family(root, reading).imaginary)
+        case Distance(point, root):
+            return _distance(point, root, reading)
         case Total(body, index, count):
             return total(value(body, reading), index.name, count.name, reading.real)
         case Det() | Roots() | TimesLog() | TimesArctan() | Log():
@@ -283,6 +298,24 @@ def _variable(symbol: Symbol, point: Term) -> str:
             return FREQUENCY
         case _:
             raise Rejected("a function is taken on the imaginary axis, or along the reals")
+
+
+def _distance(point: Term, root: Term, reading: Reading) -> Poly:
+    """Read |point - root|^2 for a point on the imaginary axis, or on the real axis."""
+    conjugate = isinstance(root, Conjugate)
+    symbol = root.root if isinstance(root, Conjugate) else root
+    if not isinstance(symbol, Symbol):
+        raise Rejected("a distance is that to a root of a family")
+    family = _family(symbol, reading)
+    re, im = scalar(family.real), scalar(family.imaginary).scale(-1 if conjugate else 1)
+    match point:
+        case Product((Symbol() as j, Symbol() as w)) if (j.name, w.name) == AXIS:
+            along, across = scalar(FREQUENCY) - im, re
+        case Symbol(name=name) | Neg(Symbol(name=name)) if name == COMPLEX:
+            along, across = value(point, reading) - re, im
+        case _:
+            raise Rejected("a distance is taken on the imaginary axis, or along the reals")
+    return along * along + across * across
 
 
 def _family(root: Symbol, reading: Reading) -> Family:

@@ -2,7 +2,8 @@
 
 scalar: the difference of both sides is zero, an identity. same rate: both sides have the same derivative in t and the
 same value at 0. sign: >=, > or ≠ by a certificate of sign. both: a = b from a >= b and b >= a. squeeze: the limit of f
-is v, because f - v and v - f are at most b and c, whose limits are zero. integral: from an antiderivative and its limits.
+is v, because f - v and v - f are at most b and c, whose limits are zero. integral: from an antiderivative and its
+limits. Those about determinants and roots are in roots.py.
 """
 
 from __future__ import annotations
@@ -225,5 +226,5 @@ CONTINUOUS = ("times log", "times arctan")
 
 def _continuous(poly: Poly, variable: str, reading: Reading) -> bool:
     """Tell whether a polynomial in the variable and functions continuous in it, whose derivative may have gaps."""
-    moving = {s for s in scalars_of(poly) if s != variable and reading.real.varies(s, variable)}
+    moving = {s for s in scalars_of(reading.real.unfold(poly)) if s != variable and reading.real.varies(s, variable)}
     return all(s in reading.real.atoms and reading.real.atoms[s].kind in CONTINUOUS for s in moving)

@@ -50,6 +50,21 @@ class ImaginaryPart(Term):
 
 
 @dataclass(frozen=True)
+class Conjugate(Term):
+    """The complex conjugates of the roots of a family."""
+
+    root: Symbol
+
+
+@dataclass(frozen=True)
+class Distance(Term):
+    """The squared distance of a point to the roots of a family, or to their conjugates."""
+
+    point: Term
+    root: Term
+
+
+@dataclass(frozen=True)
 class Total(Term):
     """The sum over an index from 1 to a count."""
 

@@ -16,7 +16,9 @@ from derive.latex.alphabet import GREEK
 from derive.presentation import Named
 from derive.spectral import (
     At,
+    Conjugate,
     Det,
+    Distance,
     Entry,
     ImaginaryPart,
     Modulus,
@@ -226,8 +228,14 @@ def level(term: Term) -> int:
             return level(symbol)
         case Dot() | Integral() | Gradient() | Definite() | Rate() | Limit() | Log() | Arctan():
             return OPEN
-        case Det() | Total() | Roots() | RealPart() | ImaginaryPart():
+        case Det(body) if not isinstance(body, (Symbol, At)):
+            return POWER
+        case Roots():
+            return PRODUCT
+        case Det() | Total() | RealPart() | ImaginaryPart():
             return OPEN
+        case Distance():
+            return POWER
         case TimesLog() | TimesArctan():
             return PRODUCT
         case At() | Entry():
@@ -304,6 +312,8 @@ def layout(term: Term | Equation) -> Box:
             return _function(term)
         case Det() | Roots() | Total() | RealPart() | ImaginaryPart() | Modulus() | TimesLog() | TimesArctan():
             return _spectral(term)
+        case Conjugate() | Distance():
+            return _spectral(term)
         case Entry(body):
             return layout(body)
         case At():
@@ -359,6 +369,9 @@ def _flat(addends: Iterable[Term]) -> Iterator[Term]:
         yield from _flat(addend.addends) if isinstance(addend, Sum) else (addend,)
 
 
+NAMED = (Log, Arctan, Limit, Max, Det, Total, Roots, RealPart, ImaginaryPart)  # set off from the factor before them
+
+
 def _product(term: Term) -> Box:
     negative, body = signed(term)
     if negative:
@@ -370,7 +383,8 @@ def _product(term: Term) -> Box:
     items: list[Box] = []
     for i, factor in enumerate(factors):
         if i:
-            items.append(Op("⋅") if isinstance(factor, Number) else Op(TIMES, "tight"))
+            named = isinstance(factor, NAMED)
+            items.append(Op("⋅") if isinstance(factor, Number) else Op(THIN if named else TIMES, "tight"))
         items.append(at_least(factor, OPEN if i == len(factors) - 1 else PRODUCT))
     return row(items)
 
@@ -422,7 +436,9 @@ def _function(term: Term) -> Box:
             return Scripted(Fenced(layout(body), "[", "]"), where)
         case Limit(body, symbol, point):
             where = row((layout(symbol), Op("→", "tight"), layout(point)))
-            return row((Scripted(Letter("lim", upright=True), where), Op(APPLY, "tight"), at_least(body, PRODUCT)))
+            closed = at_least(body, PRODUCT)
+            between = Op(APPLY if isinstance(closed, Fenced) else THIN, "tight")
+            return row((Scripted(Letter("lim", upright=True), where), between, closed))
         case Definite(body, symbol, lower, upper):
             sign = Scripted(Op(INTEGRAL, "prefix"), layout(lower), layout(upper))
             differential = row((Op(THIN, "tight"), Letter("d", upright=True), layout(symbol)))
@@ -436,10 +452,14 @@ def _spectral(term: Term) -> Box:
     match term:
         case Det(body):
             name, simple = Letter("det", upright=True), isinstance(body, (Symbol, At))
-            return row((name, Op(APPLY, "tight"), layout(body) if simple else Fenced(layout(body), "[", "]")))
+            return row((name, Op(THIN, "tight"), layout(body)) if simple else (name, Fenced(layout(body), "[", "]")))
         case RealPart(root) | ImaginaryPart(root):
             name = Letter("Re" if isinstance(term, RealPart) else "Im", upright=True)
             return row((name, Op(THIN, "tight"), layout(root)))
+        case Conjugate(root):
+            return _symbol(root, "bar")
+        case Distance(point, root):
+            return Scripted(Fenced(row((layout(point), Op("−"), layout(root))), "|", "|"), None, Digits("2"))
         case Modulus(body):
             return Fenced(layout(body), "|", "|")
         case Total(body, index, count) | Roots(body, _, index, count):

@@ -60,6 +60,18 @@ RULES: dict[Rule, str] = {
     "squeeze": "limit by comparison",
     "integral": "antiderivative and its limits",
     "same argument": "equal arguments",
+    "instance": "for this number",
+    "sum over": "sum",
+    "linear": "integral of a sum",
+    "conjugate": "conjugate roots",
+    "same roots": "equal roots",
+    "modulus": "distances to the roots",
+    "trace of roots": "trace",
+    "determinant": "determinant of a product",
+    "exchange": "determinant",
+    "single": "one entry",
+    "positive": "positive matrix",
+    "resolvent": "strictly proper",
 }
 SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 
@@ -325,8 +337,8 @@ class _Layout:
             if item.statement.relation in ("⪰", "≻", "≥", ">", "≠"):
                 return item.statement
             return lhs if isinstance(lhs, (Symbol, Expect, Dot)) else item.text or name
-        if re.fullmatch(r"I\w+", name) and name not in self.anchors:
-            return None
+        if item is None or (re.fullmatch(r"I\w+", name) and name not in self.anchors):
+            return None  # what holds of an identity matrix, or of a function where it is defined
         return f"“{item.text}”" if isinstance(item, DeclaredFact) and item.text else name
 
     def note(self, item: Erratum) -> Note:

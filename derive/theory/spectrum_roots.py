@@ -12,7 +12,18 @@ from fractions import Fraction
 from derive.context import Theory
 from derive.derivation import Step
 from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Quotient, Rate
-from derive.spectral import At, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
+from derive.spectral import (
+    At,
+    Conjugate,
+    Distance,
+    ImaginaryPart,
+    Modulus,
+    RealPart,
+    Roots,
+    TimesArctan,
+    TimesLog,
+    Total,
+)
 from derive.terms import Equation, Glyph, Neg, Product, Sum, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
@@ -54,6 +65,11 @@ def declare(t: Theory) -> None:
     t.atom("spectral", TimesLog(b, a), name="β ln u(0)")
     t.atom("spectral", TimesArctan(b, a), name="arctan(0)")
     t.atom("improper", root_integrand(w, a, b), name="integral of a root")
+    low, high = (TimesLog(_shifted(w, b, k), a) for _, k in SIDES)
+    turns = [TimesArctan(_shifted(w, b, k), a) for _, k in SIDES]
+    G = t.scalar("G", meaning="antiderivative")
+    t.symbols["G"] = G = replace(G, show_args=("ω",))
+    t.define("G", G, low + high - 2 * TimesLog(w, ZERO) + 2 * turns[0] + 2 * turns[1], "0 where a factor vanishes")
     _declare_function(t)
 
 
@@ -105,10 +121,10 @@ def declare_family(t: Theory, root: Symbol, *signs: int) -> None:
 
 def declare_integrals(t: Theory, name: str, log: Term, zeros: Symbol, poles: Symbol) -> None:
     """Declare the logarithm of a quotient on the axis and its integral over half of the axis."""
-    w, i, m = t.symbols["ω"], t.symbols["i"], t.symbols["m"]
+    i, m = t.symbols["i"], t.symbols["m"]
     t.atom("spectral", log, name=f"ln {name}")
     t.atom("improper", log, name=f"integral of ln {name}")
-    pair = _pair(w, zeros, poles)
+    pair = _pair(t, zeros, poles)
     t.atom("improper", Total(pair, i, m), name=f"integral of the roots of {name}")
     t.atom("improper", weight(log) * Total(pair, i, m), name=f"integral of the weighted roots of {name}")
     t.atom("improper", pair, name=f"integral of one root of {name}")
@@ -124,11 +140,14 @@ def weight(log: Term) -> Fraction:
     return QUARTER if isinstance(log, Log) and isinstance(log.body, Modulus) else HALF
 
 
-def _pair(w: Term, zeros: Symbol, poles: Symbol) -> Term:
-    """Return the integrand of one zero less that of one pole."""
-    one, other = (
-        [Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))) for _, k in SIDES] for r in (zeros, poles)
-    )
+def _both(t: Theory, root: Symbol) -> tuple[Log, Log]:
+    """Return ln|jω - root|^2, and the same for the conjugate."""
+    return Log(Distance(axis(t), root)), Log(Distance(axis(t), Conjugate(root)))
+
+
+def _pair(t: Theory, zeros: Symbol, poles: Symbol) -> Term:
+    """Return the integrand of one zero less that of one pole, each with its conjugate."""
+    one, other = _both(t, zeros), _both(t, poles)
     return one[0] + one[1] - other[0] - other[1]
 
 
@@ -174,14 +193,10 @@ def _derive_root(b: ScalarBuilder) -> None:
     b.say("Let ", a, " + j", c, " be any root. With its conjugate it contributes to the logarithm of a modulus")
     b.given("ω > 0")
     b.sign("ω^2 > 0", Equation(square(w), ">", ZERO), "a square", ["ω > 0"])
-    low, high = (TimesLog(_shifted(w, c, k), a) for _, k in SIDES)
-    turns = [TimesArctan(_shifted(w, c, k), a) for _, k in SIDES]
-    G = low + high - 2 * TimesLog(w, ZERO) + 2 * turns[0] + 2 * turns[1]
-    b.state(
-        "antiderivative",
-        Equation(Rate(G, w), "=", root_integrand(w, a, c)),
-        "differentiate; x ln(x² + α²) and |α| arctan(x/|α|) are continuous, 0 where they are not defined",
-    )
+    G, turns = t.symbols["G"], [TimesArctan(_shifted(w, c, k), a) for _, k in SIDES]
+    b.say("An antiderivative, continuous also at the frequency of a root on the axis:")
+    b.given("G")
+    b.state("antiderivative", Equation(Rate(G, w), "=", root_integrand(w, a, c)), "differentiate")
     ratios = {sign: Log(square(_shifted(w, c, k)) + square(a)) - Log(square(w)) for sign, k in SIDES}
     for sign, k in SIDES:
         _derive_tail(b, w, a, c, sign, k)
@@ -201,38 +216,25 @@ def _derive_root(b: ScalarBuilder) -> None:
 
 def _derive_tail(b: ScalarBuilder, w: Term, a: Term, c: Term, sign: str, k: int) -> None:
     """Derive the limits of ln(u/ω²) and of ω ln(u/ω²), with u = (ω ± β)² + α²."""
-    u, slope = square(_shifted(w, c, k)) + square(a), 2 * c if k > 0 else -(2 * c)
-    ratio, size = Log(u) - Log(square(w)), square(a) + square(c)
+    u, slope, size = square(_shifted(w, c, k)) + square(a), 2 * c, square(a) + square(c)
+    ratio, shift = Log(u) - Log(square(w)), slope if k > 0 else -slope
     up, down, name = f"ln u{sign} - ln ω^2 ≤", f"ln ω^2 - ln u{sign} ≤", f" ({sign}β)"
-    b.sign(
-        "above" + name,
-        Equation(Quotient(slope, w) + Quotient(size, square(w)), "≥", ratio),
-        "ln x ≤ x - 1",
-        [up],
-        squares=[],
-    )
-    b.sign("below" + name, Equation(Neg(Quotient(w * slope + size, u)), "≥", -ratio), "ln x ≤ x - 1", [down])
+    above = _shifted(Quotient(size, square(w)), Quotient(slope, w), k)
+    below = Neg(Quotient(_shifted(size, slope * w, k), u))
+    b.sign("above" + name, Equation(above, "≥", ratio), "ln x ≤ x - 1", [up])
+    b.sign("below" + name, Equation(below, "≥", -ratio), "ln x ≤ x - 1", [down])
+    bounds = ["above" + name, "below" + name]
     b.linked(
-        "logarithm" + name,
-        Equation(Limit(ratio, w, Infinity()), "=", ZERO),
-        "squeeze",
-        "between both bounds",
-        ["above" + name, "below" + name],
+        "logarithm" + name, Equation(Limit(ratio, w, Infinity()), "=", ZERO), "squeeze", "both bounds vanish", bounds
     )
-    rest = (3 * square(c) - square(a)) * w + slope * size
-    b.sign(
-        "above, times ω" + name, Equation(Quotient(size, w), "≥", w * ratio - slope), "the first bound", [up, "ω > 0"]
-    )
-    b.sign(
-        "below, times ω" + name,
-        Equation(Quotient(rest, u), "≥", slope - w * ratio),
-        "the second bound",
-        [down, "ω > 0"],
-    )
+    rest = _shifted((3 * square(c) - square(a)) * w, slope * size, k)
+    gap, turned = _shifted(w * ratio, slope, -k), _shifted(-(w * ratio), slope, k)
+    bounds = ["above, times ω" + name, "below, times ω" + name]
+    b.sign(bounds[0], Equation(Quotient(size, w), "≥", gap), "the first bound", [up, "ω > 0"])
+    b.sign(bounds[1], Equation(Quotient(rest, u), "≥", turned), "the second bound", [down, "ω > 0"])
     b.linked(
-        "tail" + name, Equation(Limit(w * ratio, w, Infinity()), "=", slope), "squeeze", "both bounds vanish",
-        ["above, times ω" + name, "below, times ω" + name],
-    )  # fmt: skip
+        "tail" + name, Equation(Limit(w * ratio, w, Infinity()), "=", shift), "squeeze", "both bounds vanish", bounds
+    )
 
 
 def _derive_along_the_reals(b: ScalarBuilder) -> None:
@@ -307,15 +309,14 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
     """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from ``by_roots``; twice that for f = |g|^2."""
     t, part = b.theory, weight(log)
     w, i, m = (t.symbols[k] for k in ("ω", "i", "m"))
-    sums = {(r.name, sign): Total(Log(square(_shifted(w, ImaginaryPart(r), k)) + square(RealPart(r))), i, m)
-            for r in (zeros, poles) for sign, k in SIDES}  # fmt: skip
-    one = scaled(2 * part, sums[zeros.name, "-"]) - scaled(2 * part, sums[poles.name, "-"])
+    sums = {r.name: [Total(log, i, m) for log in _both(t, r)] for r in (zeros, poles)}
+    one = scaled(2 * part, sums[zeros.name][0]) - scaled(2 * part, sums[poles.name][0])
     b.linked(f"ln {name} on the axis", Equation(log, "=", one), "modulus", "the modulus of a product", [by_roots])
     for root in (zeros, poles):
         if f"conjugates of {root.name}" not in b.steps:
-            pair = Equation(sums[root.name, "-"], "=", sums[root.name, "+"])
+            pair = Equation(sums[root.name][0], "=", sums[root.name][1])
             b.linked(f"conjugates of {root.name}", pair, "conjugate", "complex roots come in conjugate pairs", [])
-    pair, conjugates = _pair(w, zeros, poles), [f"conjugates of {r.name}" for r in (zeros, poles)]
+    pair, conjugates = _pair(t, zeros, poles), [f"conjugates of {r.name}" for r in (zeros, poles)]
     even = Total(pair, i, m)
     b.state(
         f"ln {name}, even",
@@ -415,10 +416,9 @@ def _derive_function(b: ScalarBuilder) -> None:
 
 
 def _along(b: ScalarBuilder, root: Symbol, sign: int) -> Total:
-    """Return the sum of ln|s - root|^2 along the reals, or of ln|s + root|^2."""
-    t, re = b.theory, RealPart(root)
-    s, i, m = (t.symbols[k] for k in ("s", "i", "m"))
-    return Total(Log(square(_shifted(s, re, -sign)) + square(ImaginaryPart(root))), i, m)
+    """Return the sum of ln|s - root|^2 along the reals, or of ln|-s - root|^2."""
+    s, i, m = (b.theory.symbols[k] for k in ("s", "i", "m"))
+    return Total(Log(Distance(s if sign > 0 else Neg(s), root)), i, m)
 
 
 def derive_first_term(
