@@ -85,16 +85,16 @@ class Enclosure:
         names = ("integral", "unstable_term", "cross_term")
         return {name: None if self.found is None else number_of(getattr(self.found, name)) for name in names}
 
-    def cost_distance(self, plant: Plant, P: NDArray[np.floating[Any]]) -> float:
-        """Return a proved bound of tr(M |P - truth|), entry by entry, infinite when nothing is proved about P."""
+    def lacking(self, P: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]] | None:
+        """Return what P (n, n) lacks to the truth, each entry as large as it may be, or None when nothing is proved."""
         if self.found is None or self.found.by_solution.P is None:
-            return np.inf
-        from derive.numeric.balls import exact, working_bits
+            return None
+        from derive.numeric.balls import exact, floats, working_bits
 
         with working_bits(self.found.bits):
-            apart = exact(P) - self.found.by_solution.P
-            sizes = np.array([float(x.abs_upper()) for x in apart.entries()])
-        return float(np.abs(plant.M).ravel() @ sizes)
+            apart = self.found.by_solution.P - exact(P)
+            sizes = np.array([float(x.abs_upper()) for x in apart.entries()]).reshape(P.shape)
+            return np.copysign(sizes, floats(apart))
 
     def distance(self, output: float | None) -> float | None:
         """Return a proved bound of |output - truth|, or None when nothing is proved."""

@@ -13,7 +13,7 @@ import numpy as np
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
 from lmi.comparison import Reference, Route, judged
 from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
-from lmi.routes import ROUTES, Answer, RouteSpec
+from lmi.routes import ROUTES, Answer, RouteSpec, nuclear_norm
 
 __all__ = ["Route", "Validation", "Verdict", "validate"]
 
@@ -114,9 +114,10 @@ def _as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:
 
 def _with_proved_error(plant: Plant, answer: Answer, enclosure: Enclosure) -> Answer:
     """Return Riccati's answer with the error of its cost as it is proved, where that is less than the estimate."""
-    if answer.P is None:
+    lacking = None if answer.P is None else enclosure.lacking(answer.P)
+    if lacking is None:
         return answer
-    return replace(answer, error=min(answer.error, enclosure.cost_distance(plant, answer.P)))
+    return replace(answer, error=min(answer.error, nuclear_norm(plant, lacking)))
 
 
 @dataclass(frozen=True, eq=False)

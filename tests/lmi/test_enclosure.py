@@ -87,8 +87,12 @@ def test_the_report_says_what_is_proved():
         "  = 0.269276 (integral) + 1.38629 (unstable modes)",
         "tr(MP) = 8.47213595499957939281834733746 proved to 30 digits",
     ]
-    plant = plant_from_mapping({"time": "continuous", "A": 1, "C": 1, "W": 1, "V": 1, "N": -0.5})
-    assert list(proved_lines(validate(plant)))[1] == "  = 0.732051 (integral) + 2 (unstable modes) + 0.5 (tr CNV^-1)"
+    data = {"time": "continuous", "A": 1, "C": 1, "W": 1, "V": 1}
+    for N, line in (
+        (-0.5, "  = 0.732051 (integral) + 2 (unstable modes) + 0.5 (tr CNV^-1)"),
+        (0.2, "  = 0.264911 (integral) + 2 (unstable modes) - 0.2 (tr CNV^-1)"),
+    ):
+        assert list(proved_lines(validate({**data, "N": N})))[1] == line
 
 
 def run_only(monkeypatch, *routes):
@@ -156,9 +160,25 @@ def test_the_error_of_riccati_is_the_proved_one():
     assert not np.isfinite(estimate)
     assert validation.routes[0].residual < 1e-12
     assert validation.verdict is Verdict.AGREE
-    P = solve_riccati(plant).P
-    assert validation.enclosure.cost_distance(plant, P + np.diag([0.0, 1e-3])) == pytest.approx(1e-3)
-    assert validation.enclosure.cost_distance(plant, P - np.diag([1e-3, 0.0])) == pytest.approx(1e-3, rel=1e-4)
+
+
+def test_a_proved_error_that_is_large_confirms_nothing(monkeypatch):
+    def off_by_little(plant):
+        answer = ROUTES[0].run(plant)
+        return replace(answer, P=(1 + 3e-6) * answer.P, error=np.inf, output_error=np.inf)
+
+    run_only(monkeypatch, replace(ROUTES[0], run=off_by_little), ROUTES[4])
+    validation = validate(replace(example_plant(), M=2 * np.eye(4)))
+    assert validation.routes[0].residual == pytest.approx(3e-6, rel=1e-3)
+    assert validation.verdict is Verdict.UNCONFIRMED
+
+
+def test_what_a_covariance_lacks():
+    plant = random_plant("continuous", 3, seed=61)
+    change = np.array([[0.0, 1e-3, 0.0], [1e-3, 0.0, -2e-3], [0.0, -2e-3, 3e-3]])
+    lacking = enclose(plant).lacking(solve_riccati(plant).P - change)
+    np.testing.assert_allclose(lacking, change, atol=1e-11)
+    assert enclose(EDGES["uncontrollable boundary mode"]).lacking(np.zeros((3, 3))) is None
 
 
 def test_modes_read_as_on_the_boundary_are_said_to_be():
