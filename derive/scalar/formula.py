@@ -8,17 +8,50 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
 from derive.derivation import Lecture, Step
 from derive.errors import InputError
-from derive.functions import Definite, Limit, Rate, replaced, value
+from derive.functions import Definite, Exp, Limit, Log, Rate, replaced, value
 from derive.kernel import Rejected
 from derive.scalar.program import Program
-from derive.terms import Equation, Reading, Symbol, Term
+from derive.terms import Equation, Number, Product, Reading, Symbol, Term, Zero
 
-__all__ = ["Formula", "learned"]
+__all__ = ["Formula", "Sequence", "learned"]
+
+ONE = Number(Fraction(1))
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """An expression in the number of steps k that stands for a letter: both start alike and go on alike.
+
+    The expression is k itself, or exp(k ln x), the power of x. That two such sequences are the same is the principle of
+    induction, which no certificate carries; what it needs, two steps do.
+
+    Attributes:
+        expression: k, or exp(k ln x).
+        letter: what it stands for in the lecture.
+        start: the step that says what the letter is at the start: 0, or 1.
+        following: the step that says what it is next: 1 more, or x times as much.
+    """
+
+    expression: Term
+    letter: Symbol
+    start: str
+    following: str
+
+    def ends(self, following: Term) -> tuple[Equation, Equation]:
+        """Return what the two steps have to say; ``following`` is the next letter."""
+        match self.expression:
+            case Exp(Product((Symbol(name="k"), Log(base)))):
+                return Equation(self.letter, "=", ONE), Equation(following, "=", base * self.letter)
+            case Symbol(name="k"):
+                return Equation(self.letter, "=", Zero("", "")), Equation(following, "=", ONE + self.letter)
+            case _:
+                raise InputError("a sequence is k, or a power exp(k ln x)")
 
 
 @dataclass(frozen=True)
@@ -43,13 +76,14 @@ class Formula:
     roles: tuple[str, ...]
     program: Program
     lecture: Callable[[], Lecture]
-    renamed: tuple[tuple[Symbol, Symbol], ...] = ()
     source: str = ""
+    sequences: tuple[Sequence, ...] = ()
 
     @property
     def derivation(self) -> tuple[Step, ...]:
         """The steps that prove the formula, its branches and what they mean, with certificates."""
-        names = dict.fromkeys((self.step, *self.roles, *(b.step for b in self.program.branches)))
+        ends = (name for s in self.sequences for name in (s.start, s.following))
+        names = dict.fromkeys((self.step, *self.roles, *(b.step for b in self.program.branches), *ends))
         lecture = self.lecture()
         return tuple(lecture.step(name) for name in names if name in {s.name for s in lecture.steps})
 
@@ -97,28 +131,33 @@ class Formula:
         Raises:
             InputError: a step is not accepted, or a branch computes something else than its step says.
         """
-        lecture, back = self.lecture(), tuple((new, old) for old, new in self.renamed)
+        lecture = self.lecture()
         reading, accepted = learned(lecture.key)
         lost = [s.name for s in self.derivation if s.name not in accepted]
         if lost:
             raise InputError(f"{self.name}: the step {lost[0]!r} is rejected")
         for let in self.program.lets:
-            if not _same(rename(let.body, back), rename(let.symbol, back), reading):
+            if not _same(let.body, let.symbol, reading):
                 raise InputError(f"{self.name}: {let.symbol.name} is not what the step that defines it says")
+        for sequence in self.sequences:
+            self._check_sequence(sequence, reading)
         for branch in self.program.branches:
-            step = lecture.step(branch.step).statement
-            if not any(_same(rename(branch.body, back), side, reading) for side in (step.rhs, step.lhs)):
+            step, body = lecture.step(branch.step).statement, self.with_letters(branch.body)
+            if not any(_same(body, side, reading) for side in (step.rhs, step.lhs)):
                 raise InputError(f"{self.name}: a branch is not what the step {branch.step!r} proves")
 
+    def with_letters(self, term: Term) -> Term:
+        """Write letters for the sequences in a term."""
+        for sequence in self.sequences:
+            term = replaced(term, sequence.expression, sequence.letter)  # type: ignore[arg-type]
+        return term
 
-def rename(term: Term, pairs: tuple[tuple[Symbol, Symbol], ...]) -> Term:
-    """Replace symbols by symbols, all at once."""
-    marks = [Symbol(f"\0{i}", scalar=True) for i in range(len(pairs))]
-    for (old, _), mark in zip(pairs, marks, strict=True):
-        term = replaced(term, old, mark)
-    for (_, new), mark in zip(pairs, marks, strict=True):
-        term = replaced(term, mark, new)
-    return term
+    def _check_sequence(self, sequence: Sequence, reading: Reading) -> None:
+        said = [self.lecture().step(name).statement for name in (sequence.start, sequence.following)]
+        for wanted, found in zip(sequence.ends(said[1].lhs), said, strict=True):
+            sides = zip((wanted.lhs, wanted.rhs), (found.lhs, found.rhs), strict=True)
+            if not all(_same(one, two, reading) for one, two in sides):
+                raise InputError(f"{self.name}: {sequence.letter.name} is not the sequence that the program computes")
 
 
 @cache

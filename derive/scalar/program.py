@@ -130,8 +130,9 @@ def _decimal(value: Fraction) -> str:
     return top if value.denominator == 1 else f"({top}/{bottom})"
 
 
-C = Language({"sqrt": "sqrt", "abs": "fabs", "max": "fmax", "exp": "exp", "log": "log", "expm1": "expm1"}, _decimal)
-JAVASCRIPT = Language({k: f"Math.{k}" for k in ("sqrt", "abs", "max", "exp", "log", "expm1")}, _decimal)
+SAME = ("sqrt", "exp", "log", "expm1", "log1p")  # 1 - exp(x) is written with expm1, ln(1 - x) with log1p
+C = Language({**{k: k for k in SAME}, "abs": "fabs", "max": "fmax"}, _decimal)
+JAVASCRIPT = Language({k: f"Math.{k}" for k in (*SAME, "abs", "max")}, _decimal)
 
 
 def _text(term: Term, language: Language) -> str:
@@ -163,6 +164,8 @@ def _text(term: Term, language: Language) -> str:
             return f"{call['max']}(0.0, {_text(body, language)})"
         case Exp(body):
             return f"{call['exp']}({_text(body, language)})"
+        case Log(Sum((Number(Fraction(numerator=1, denominator=1)), Neg(body)))):
+            return f"{call['log1p']}((-{_text(body, language)}))"
         case Log(body):
             return f"{call['log']}({_text(body, language)})"
         case _:
@@ -209,6 +212,8 @@ def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) 
             return _fold(top, env, apply) / _fold(bottom, env, apply)
         case Power(body, exponent):
             return _fold(body, env, apply) ** exponent
+        case Log(Sum((Number(Fraction(numerator=1, denominator=1)), Neg(body)))):
+            return apply("log1p", -_fold(body, env, apply))
         case Root(body) | Abs(body) | Max(body) | Exp(body) | Log(body):
             names = {Root: "sqrt", Abs: "abs", Max: "max", Exp: "exp", Log: "log"}
             return apply(names[type(term)], _fold(body, env, apply))

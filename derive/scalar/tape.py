@@ -112,6 +112,8 @@ class Tape:
                 return self._apply(np.divide, self._term(top), self._term(bottom))
             case Power(body, exponent) if exponent > 0:
                 return self._fold(np.multiply, [self._term(body)] * exponent)
+            case Log(Sum((Number(Fraction(numerator=1, denominator=1)), Neg(body)))):
+                return self._apply(np.log1p, self._apply(np.negative, self._term(body)))
             case Max(body):
                 return self._apply(np.maximum, self._number(0.0), self._term(body))
             case Root(body) | Abs(body) | Exp(body) | Log(body) | Neg(body):

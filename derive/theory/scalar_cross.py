@@ -7,7 +7,7 @@ from derive.functions import Quotient, Root
 from derive.terms import Equation, Glyph, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
-from derive.theory.scalar_discrete import RECIPROCAL, declare_roots, derive_signs
+from derive.theory.scalar_discrete import RECIPROCAL, declare_roots, derive_signs, innovation
 
 
 def declare(t: Theory) -> None:
@@ -51,6 +51,8 @@ def _declare_discrete(t: Theory) -> None:
     beta, T, M = (t.symbols[k] for k in ("b_S", "T_S", "M_S"))
     L = t.scalar("L_S", Glyph("L", sub="S"), meaning="gain of the predictor with common noise")
     t.define("L_S", L, Quotient(A * M * C + N, square(C) * M + R))
+    half = innovation(F, C, q, R, T)
+    t.atom("reciprocal", half, "half with common noise > 0", "1/(half with common noise)")
     t.assume("T_S > 0", T, ">", text="no mode on the circle that is not excited", case=True)
     t.assume("T_S > b_S", T, ">", beta, "noise excites the state, or it is stable", case=True)
     t.atom("reciprocal", T - beta, "T_S > b_S", "1/(T_S-b_S)")
@@ -160,16 +162,20 @@ def _derive_inside(b: ScalarBuilder, sigma: Term, over: Term, loop: Term) -> Non
 
 def _derive_circle(b: ScalarBuilder) -> None:
     s = b.theory.symbols
-    C, R, N, q, beta, T, M, L = (s[k] for k in ("C", "R", "S_d", "q_d", "b_S", "T_S", "M_S", "L_S"))
+    A, C, R, N, F, q, beta, T, M, L = (s[k] for k in ("A", "C", "R", "S_d", "F_d", "q_d", "b_S", "T_S", "M_S", "L_S"))
+    half, tail = innovation(F, C, q, R, T), " with common noise"
+    over, below = Quotient(beta + T, 2 * square(C)), Quotient(2 * q * R, T - beta)
+    b.sign("half with common noise > 0", Equation(half, ">", ZERO), "R is positive",
+           ["T >= 0_S", "R > 0", "q_d >= 0"], squares=[F, C])  # fmt: skip
+    b.state("innovation covariance" + tail, Equation(square(C) * M + R, "=", half), "insert the root")
+    b.state("predictor gain" + tail, Equation(L, "=", Quotient(A * C * over + N, half)), "insert both")
     b.say("Without a division by ", C, ", and where both roots are one:")
     b.given("T_S > b_S")
-    b.state(
-        "same discrete covariance with common noise",
-        Equation(M, "=", Quotient(2 * q * R, T - beta)),
-        "multiply by T - b",
-    )
+    b.state("same discrete covariance" + tail, Equation(M, "=", below), "multiply by T - b")
+    b.state("same predictor gain" + tail, Equation(L, "=", Quotient(A * C * below + N, half)), "insert it",
+            ["predictor gain" + tail, "same discrete covariance" + tail, "M_S from its definition"])  # fmt: skip
     b.given("q_d = 0", "F_d^2 = 1")
-    tail = "double root on the circle with common noise"
-    b.state("square of the " + tail, Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["q_d = 0", "F_d^2 = 1"])
-    b.equal(tail, Equation(M, "=", ZERO), ["M >= 0_S"], identities=["square of the " + tail])
-    b.state(tail + ", gain", Equation(L, "=", Quotient(N, R)), "insert it", [tail])
+    circle = "double root on the circle with common noise"
+    b.state("square of the " + circle, Equation(square(M), "=", ZERO), "T^2 = b^2 = 0", ["q_d = 0", "F_d^2 = 1"])
+    b.equal(circle, Equation(M, "=", ZERO), ["M >= 0_S"], identities=["square of the " + circle])
+    b.state(circle + ", gain", Equation(L, "=", Quotient(N, R)), "insert it", [circle])

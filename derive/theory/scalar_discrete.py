@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from derive.context import Theory
 from derive.functions import Abs, Max, Quotient, Root
-from derive.terms import Equation, Glyph, Term
+from derive.terms import Equation, Glyph, Number, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 
@@ -19,6 +21,11 @@ def recursion(A: Term, C: Term, Q: Term, R: Term, P: Term) -> Term:
 def linear(A: Term, C: Term, Q: Term, R: Term) -> Term:
     """Return A^2 R + C^2 Q - R."""
     return square(A) * R + square(C) * Q - R
+
+
+def innovation(A: Term, C: Term, Q: Term, R: Term, T: Term) -> Term:
+    """Return the innovation covariance C^2 M + R of the upper root M without a division by C."""
+    return Number(Fraction(1, 2)) * (square(A) * R + square(C) * Q + R + T)
 
 
 def declare(t: Theory) -> None:

@@ -141,6 +141,7 @@ def _derive_power(b: ScalarBuilder) -> None:
         "T^2 = (trace)^2 - 4 det",
     )  # fmt: skip
     b.say("So the power starts at one and is multiplied by ", rho, " at each step, as a power is:")
+    b.state("sum of no power", Equation(sigma, "=", ZERO), "the empty sum", ["σ = 0"])
     b.state("power at the start", Equation(s["ρ^k"], "=", ONE), "the empty sum", ["σ = 0"])
     b.state("the power as a sum", Equation(s["ρ^k+1"], "=", rho * s["ρ^k"]), "insert both")
 
@@ -216,6 +217,13 @@ def _derive_filtered(b: ScalarBuilder) -> None:
     b.state("double root on the circle, gain", Equation(s["L"], "=", ZERO), "insert it", ["double root on the circle"])
     b.state("predictor loop", Equation(s["A"] - s["L"] * C, "=", Quotient(s["A"] * R, lam)), "the same denominator",
             ["discrete closed loop", "steady innovation covariance"])  # fmt: skip
+    m = s["m"]
+    gain = Quotient(s["A"] * m * C, square(C) * m + R)
+    b.state(
+        "innovation covariance without a division by C", Equation(square(C) * m + R, "=", lam), "T^2 - b^2 = 4 C^2 Q R"
+    )
+    b.state("predictor loop without a division by C", Equation(s["A"] - gain * C, "=", Quotient(s["A"] * R, lam)),
+            "the same denominator")  # fmt: skip
 
 
 def _derive_explicit(b: ScalarBuilder) -> None:

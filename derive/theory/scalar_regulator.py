@@ -6,14 +6,12 @@ Q for the process noise and R for the sensor noise; for numbers, A' is A.
 
 from __future__ import annotations
 
-from fractions import Fraction
-
 from derive.context import Theory
 from derive.functions import Quotient, Root
-from derive.terms import Equation, Glyph, Number, Symbol, Term
+from derive.terms import Equation, Glyph, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
-from derive.theory.scalar_discrete import RECIPROCAL, declare_roots, derive_signs, recursion
+from derive.theory.scalar_discrete import RECIPROCAL, declare_roots, derive_signs, innovation, recursion
 
 
 def declare(t: Theory) -> None:
@@ -48,7 +46,7 @@ def _declare_discrete(t: Theory, B: Symbol) -> None:
 def weight(t: Theory) -> Term:
     """Return B^2 X + R without a division by B."""
     A, B, Q, R, T = (t.symbols[k] for k in ("A", "B", "Q", "R", "T_B"))
-    return Number(Fraction(1, 2)) * (square(A) * R + square(B) * Q + R + T)
+    return innovation(A, B, Q, R, T)
 
 
 def derive(b: ScalarBuilder) -> None:
@@ -80,6 +78,13 @@ def _derive_continuous(b: ScalarBuilder) -> None:
     b.state("cost without a division by B", Equation(X, "=", Quotient(Q, S - A)), "multiply by S - A")
     b.state("gain without a division by B", Equation(K, "=", Quotient(Q * B, R * (S - A))), "insert it",
             ["cost without a division by B", "K_B"])  # fmt: skip
+    _derive_double(b, "double root of the regulator", X, K, "X_B >= 0", ["A = 0", "Q = 0"])
+
+
+def _derive_double(b: ScalarBuilder, name: str, cost: Term, gain: Term, fact: str, cases: list[str]) -> None:
+    b.state("square of the " + name, Equation(square(cost), "=", ZERO), "the root vanishes", cases)
+    b.equal(name, Equation(cost, "=", ZERO), [fact], identities=["square of the " + name])
+    b.state(name + ", gain", Equation(gain, "=", ZERO), "insert it", [name])
 
 
 def _derive_discrete(b: ScalarBuilder) -> None:
@@ -125,3 +130,4 @@ def _derive_gain(b: ScalarBuilder) -> None:
     b.state("discrete gain without a division by B", Equation(F, "=", Quotient(A * B * below, weight(b.theory))),
             "insert it", ["discrete gain of the regulator", "discrete cost without a division by B",
                           "discrete cost of the regulator"])  # fmt: skip
+    _derive_double(b, "double root of the regulator on the circle", X, F, "M >= 0_B", ["A^2 = 1", "Q = 0"])
