@@ -426,8 +426,8 @@ def _function(term: Term) -> Box:
             return Scripted(Letter("e", upright=True), None, layout(body))
         case Log(body) | Arctan(body):
             name = Letter("ln" if isinstance(term, Log) else "arctan", upright=True)
-            closed = layout(body) if level(body) == ATOM else Fenced(layout(body))
-            return row((name, Op(APPLY, "tight"), closed))
+            closed = layout(body) if level(body) >= POWER else Fenced(layout(body))
+            return row((name, Op(THIN if level(body) == POWER else APPLY, "tight"), closed))
         case Rate(body, symbol):
             d, closed = Letter("d", upright=True), at_least(body, POWER)
             return row((Over(d, row((d, layout(symbol)))), Op(APPLY, "tight"), closed))

@@ -11,11 +11,29 @@ from functools import cache
 
 from derive.context import Theory
 from derive.derivation import Lecture
-from derive.theory import spectrum_cross, spectrum_filter, spectrum_poles, spectrum_roots, spectrum_special
+from derive.theory import (
+    spectrum_bode,
+    spectrum_bounds,
+    spectrum_cross,
+    spectrum_filter,
+    spectrum_jensen,
+    spectrum_poles,
+    spectrum_roots,
+    spectrum_special,
+)
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum", "spectrum"
-PARTS = (spectrum_roots, spectrum_filter, spectrum_poles, spectrum_special, spectrum_cross)
+PARTS = (
+    spectrum_roots,
+    spectrum_jensen,
+    spectrum_filter,
+    spectrum_bode,
+    spectrum_poles,
+    spectrum_bounds,
+    spectrum_special,
+    spectrum_cross,
+)
 
 
 @cache

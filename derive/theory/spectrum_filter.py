@@ -1,4 +1,4 @@
-"""From the Riccati equation to the spectrum of the output: theorems 1 and 2 of the source, and the Bode integrals."""
+"""From the Riccati equation to the spectrum of the output: theorem 1 of the source."""
 
 from __future__ import annotations
 
@@ -6,22 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from derive.context import Theory
-from derive.functions import Abs, Definite, Infinity, Limit, Log, Max, Quotient
-from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
+from derive.functions import Abs, Log, Max, Quotient
+from derive.spectral import At, Det, ImaginaryPart, RealPart, Roots, Total
 from derive.terms import Equation, Glyph, Identity, Neg, Product, Symbol, Term, Trace, Zero
-from derive.theory.scalar_continuous import ONE, ZERO
+from derive.theory.scalar_continuous import ZERO
 from derive.theory.spectrum_builder import SpectrumBuilder
 from derive.theory.spectrum_roots import (
-    HALF,
     SOURCE,
     axis,
     declare_family,
     declare_integrals,
     derive_family,
-    derive_first_term,
     derive_integral,
     derive_root,
-    on_axis,
     root_integrand,
     whole,
 )
@@ -65,9 +62,6 @@ def declare(t: Theory) -> None:
     Phi = t.matrix("Phi_y", "l", "l", Glyph("Φ", sub="y"), show_args=("s",), meaning="spectrum of the output")
     t.complex.add("Phi_y")
     t.define("Phi_y", Phi, C * resolvent(t) * W * resolvent(t, -1).T * C.T + V)
-    L = t.matrix("L", "l", "l", show_args=("s",), meaning="open loop of the filter")
-    t.complex.add("L")
-    t.define("L", L, C * resolvent(t) * K)
     _declare_roots(t)
     _declare_numbers(t)
 
@@ -130,26 +124,13 @@ def _declare_roots(t: Theory) -> None:
 
 
 def _declare_numbers(t: Theory) -> None:
-    A, C, P, K, V, Phi, L, Sigma, s = (t.symbols[k] for k in ("A", "C", "P", "K", "V", "Phi_y", "L", "Sigma", "s"))
-    one = Identity("l")
-    for name, body in (("V", V), ("Phi_y V^-1", Phi * V.inv), ("I + L", one + L)):
+    A, C, P, V, Phi, Sigma = (t.symbols[k] for k in ("A", "C", "P", "V", "Phi_y", "Sigma"))
+    for name, body in (("V", V), ("Phi_y V^-1", Phi * V.inv)):
         t.atom("spectral", Det(body), name=f"det {name}")
     t.atom("reciprocal", Det(V), "det V > 0", "1/det V")
     declare_filter(t, PAPER, "μ")
-    for name, body in (
-        ("A", A), ("CPC'V^-1", C * P * C.T * V.inv), ("Sigma V^-1", Sigma * V.inv), ("CK", C * K),
-        ("L", L), ("CFK", C * resolvent(t) * K), ("CAFK", C * A * resolvent(t) * K),
-    ):  # fmt: skip
+    for name, body in (("A", A), ("CPC'V^-1", C * P * C.T * V.inv), ("Sigma V^-1", Sigma * V.inv)):
         t.atom("spectral", Trace(body), name=f"tr {name}")
-    t.atom("reciprocal", Det(factor(t)), "the factor is regular", "1/det factor")
-    t.atom("reciprocal", Det(one + L), "I + L is regular", "1/det(I+L)")
-    open_loop, closed = t.symbols["λ"], t.symbols["μ"]
-    sensitivity, bode = Quotient(ONE, Det(factor(t))), Quotient(ONE, Det(one + L))
-    declare_integrals(t, "sensitivity", on_axis(t, sensitivity), open_loop, closed)
-    t.atom("spectral", Log(Modulus(At(sensitivity, s, s))), name="ln|sensitivity(s)|")
-    t.atom("spectral", on_axis(t, bode), name="ln|1/det(I+L)|")
-    t.atom("improper", on_axis(t, bode), name="integral of ln|1/det(I+L)|")
-    t.atom("spectral", Log(Modulus(At(bode, s, s))), name="ln|1/det(I+L(s))|")
 
 
 def spectrum_ratio(t: Theory, f: Filter = PAPER) -> Quotient:
@@ -164,7 +145,7 @@ def log_spectrum(t: Theory, f: Filter = PAPER) -> Log:
 
 # ------------------------------------------------------------------------------------------------ theorem 1
 def derive(b: SpectrumBuilder) -> None:
-    """Derive theorem 1 and the Bode integrals."""
+    """Derive theorem 1."""
     t = b.theory
     b.heading("Spectral factorisation")
     b.say("The steady filter, and the spectrum of its input continued to all s:")
@@ -180,7 +161,6 @@ def derive(b: SpectrumBuilder) -> None:
     derive_eigenvalues(b, t.symbols["λ"], t.symbols["A"])
     derive_spectrum(b, PAPER)
     _derive_theorem(b)
-    _derive_bode(b)
 
 
 def _derive_open_loop_determinant(b: SpectrumBuilder) -> None:
@@ -328,128 +308,5 @@ def _derive_theorem(b: SpectrumBuilder) -> None:
         "|x| = 2 max(0, x) - x; the traces of A cancel",
         ["log-integral of Phi_y", "closed loop, summed", "modulus of λ, summed", *TRACES],
         number="12",
-        source=SOURCE,
-    )
-
-
-# ------------------------------------------------------------------------------------------------ Bode integrals
-def _derive_bode(b: SpectrumBuilder) -> None:
-    t = b.theory
-    s, i, m, open_loop, closed = (t.symbols[k] for k in ("s", "i", "m", "λ", "μ"))
-    b.heading("The Bode integral of the filter")
-    sensitivity = Quotient(ONE, Det(factor(t)))
-    b.sign("the factor is regular", Equation(Det(factor(t)), "≠", ZERO), "a quotient of polynomials that are not zero",
-           ["product u(s) μ ≠ 0"], identities=["factor by its roots"])  # fmt: skip
-    b.state(
-        "sensitivity by its roots",
-        Equation(sensitivity, "=", Quotient(Roots(s, open_loop, i, m), Roots(s, closed, i, m))),
-        "open loop over closed loop",
-        ["factor by its roots"],
-    )
-    derive_integral(b, "sensitivity", on_axis(t, sensitivity), open_loop, closed, "sensitivity by its roots")
-    limit = HALF * Total(RealPart(closed), i, m) - HALF * Total(RealPart(open_loop), i, m)
-    first = derive_first_term(
-        b, "sensitivity", sensitivity, [(open_loop, 1)], [(closed, 1)], limit, "sensitivity by its roots"
-    )
-    cost = Neg(HALF * output_cost(t))
-    b.say("Its zeros are the eigenvalues of A:")
-    sums = ["log-integral of sensitivity", "closed loop, summed", "modulus of λ, summed"]
-    integral = whole(b, on_axis(t, sensitivity))
-    b.state(
-        "sensitivity integral",
-        Equation(integral, "=", first + unstable(t)),
-        "proposition 1 for this function",
-        [*sums, "first term of sensitivity"],
-        number="17",
-        source=SOURCE,
-    )
-    b.state(
-        "sensitivity and cost",
-        Equation(first + unstable(t), "=", cost + unstable(t)),
-        "the trace of A - KC",
-        ["first term of sensitivity", *TRACES],
-        number="17",
-        source=SOURCE,
-    )
-    b.state(
-        "Bode integral",
-        Equation(integral, "=", cost + unstable(t)),
-        "both equations",
-        ["sensitivity integral", "sensitivity and cost"],
-        number="18",
-        source=SOURCE,
-    )
-    _derive_open_loop(b)
-
-
-def _derive_open_loop(b: SpectrumBuilder) -> None:
-    t = b.theory
-    A, C, K, L, s = (t.symbols[k] for k in ("A", "C", "K", "L", "s"))
-    F, one, sensitivity = resolvent(t), Identity("l"), Quotient(ONE, Det(factor(t)))
-    b.say("With the open loop of the filter as a feedback system")
-    b.given("L", numbers=("19",), source=SOURCE)
-    b.state("det(I + L)", Equation(Det(one + L), "=", Det(factor(t))), "definition", ["L"], rule="determinant")
-    b.sign(
-        "I + L is regular",
-        Equation(Det(one + L), "≠", ZERO),
-        "as before",
-        ["product u(s) μ ≠ 0"],
-        identities=["factor by its roots", "det(I + L)"],
-    )
-    bode = Quotient(ONE, Det(one + L))
-    b.state("return difference", Equation(bode, "=", sensitivity), "definition", ["det(I + L)"])
-    b.linked(
-        "ln of the return difference",
-        Equation(on_axis(t, bode), "=", on_axis(t, sensitivity)),
-        "same argument",
-        "the same function",
-        ["return difference"],
-    )
-    w = t.symbols["ω"]
-    halves = [Definite(on_axis(t, f), w, ZERO, Infinity()) for f in (bode, sensitivity)]
-    b.linked(
-        "integral of the return difference",
-        Equation(halves[0], "=", halves[1]),
-        "same argument",
-        "the same integrand",
-        ["ln of the return difference"],
-    )
-    b.say("For large s the trace of sL tends to that of CK, because s(sI - A)⁻¹ = I + A(sI - A)⁻¹:")
-    b.state("resolvent", Equation(Trace(L), "=", Trace(C * F * K)), "definition", ["L"], rule="trace")
-    b.state(
-        "s times the resolvent",
-        Equation(Trace(s * (C * F * K)), "=", Trace(C * K) + Trace(C * A * F * K)),
-        "the inverse",
-        ["(sI-A)^-1"],
-        rule="trace",
-    )
-    b.linked(
-        "the resolvent vanishes",
-        Equation(Limit(Trace(C * A * F * K), s, Infinity()), "=", ZERO),
-        "resolvent",
-        "its entries are strictly proper",
-        [],
-    )
-    b.state(
-        "s tr L",
-        Equation(HALF * s * Trace(L), "=", HALF * Trace(C * K) + HALF * Trace(C * A * F * K)),
-        "both",
-        ["resolvent", "s times the resolvent"],
-    )
-    slope = Limit(HALF * s * Trace(L), s, Infinity())
-    b.linked(
-        "limit of s tr L",
-        Equation(slope, "=", HALF * Trace(C * K)),
-        "same argument",
-        "the last term vanishes",
-        ["s tr L"],
-    )
-    b.state("trace of CK", Equation(Trace(C * K), "=", output_cost(t)), "the gain", ["gain"], rule="trace")
-    b.state(
-        "Bode integral of L",
-        Equation(whole(b, on_axis(t, bode)), "=", Neg(slope) + unstable(t)),
-        "the Bode integral",
-        ["integral of the return difference", "Bode integral", "limit of s tr L", "trace of CK"],
-        number="20",
         source=SOURCE,
     )

@@ -1,7 +1,4 @@
-"""The log-integral of a quotient of polynomials by its zeros and poles: propositions 1 and 2 of the source.
-
-One root is integrated with an antiderivative and its limits; a polynomial is the sum over its roots.
-"""
+"""The log-integral of one root, by an antiderivative and its limits, and of a polynomial, as the sum over its roots."""
 
 from __future__ import annotations
 
@@ -35,7 +32,7 @@ SIDES = (("-", -1), ("+", 1))  # ω - β and ω + β
 
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(t: Theory) -> None:
-    """Declare the frequency, an arbitrary root, and a function by its zeros and poles."""
+    """Declare the frequency, and an arbitrary root with its logarithms."""
     pi = t.symbols["π"] = PI
     t.assume("π > 0", pi, ">", text="the circle's number is positive")
     t.atom("reciprocal", pi, "π > 0", "1/π")
@@ -70,7 +67,6 @@ def declare(t: Theory) -> None:
     G = t.scalar("G", meaning="antiderivative")
     t.symbols["G"] = G = replace(G, show_args=("ω",))
     t.define("G", G, low + high - 2 * TimesLog(w, ZERO) + 2 * turns[0] + 2 * turns[1], "0 where a factor vanishes")
-    _declare_function(t)
 
 
 def _distance(t: Theory, u: Term, name: str, why: str) -> None:
@@ -151,39 +147,12 @@ def _pair(t: Theory, zeros: Symbol, poles: Symbol) -> Term:
     return one[0] + one[1] - other[0] - other[1]
 
 
-def _declare_function(t: Theory) -> None:
-    i, m, s = (t.symbols[k] for k in ("i", "m", "s"))
-    zero, pole = (t.roots(n, i, m, Glyph(n, sub="i"), meaning=f"{w} of f") for n, w in (("φ", "zeros"), ("η", "poles")))
-    for root in (zero, pole):
-        declare_family(t, root, 1)
-        t.atom(
-            "improper",
-            root_integrand(t.symbols["ω"], RealPart(root), ImaginaryPart(root)),
-            name=f"integral of {root.name}",
-        )
-    p, q, f = (_function(t, n, w) for n, w in (("p", "numerator"), ("q", "denominator"), ("f", "transfer function")))
-    t.define("p", p, Roots(s, zero, i, m), "monic, with its zeros")
-    t.define("q", q, Roots(s, pole, i, m), "monic of the same order, with the poles")
-    t.define("f", f, Quotient(p, q))
-    t.assume("f tends to 1", Limit(f, s, Infinity()), "=", ONE, text="both polynomials are monic")
-    declare_integrals(t, "f", on_axis(t, f), zero, pole)
-    t.atom("spectral", Log(Modulus(At(f, s, s))), name="ln|f(s)|")
-    t.assume("poles are stable", Neg(RealPart(pole)), ">", text="all poles of f are stable", case=True)
-
-
-def _function(t: Theory, name: str, meaning: str) -> Symbol:
-    t.scalar(name, meaning=meaning)
-    t.symbols[name] = replace(t.symbols[name], show_args=("s",))
-    return t.symbols[name]
-
-
 # ------------------------------------------------------------------------------------------------ one root
 def derive(b: ScalarBuilder) -> None:
-    """Derive the integral of one root, and of a quotient of polynomials."""
+    """Derive the integral of one root, and its decay along the reals."""
     _derive_root(b)
     _derive_along_the_reals(b)
     _derive_part(b)
-    _derive_function(b)
 
 
 def _derive_root(b: ScalarBuilder) -> None:
@@ -359,6 +328,15 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
     )  # fmt: skip
 
 
+def derive_same(b: ScalarBuilder, name: str, new: Log, old: Log, link: str) -> None:
+    """Derive that the logarithms of one function, written in two ways, are the same, and so are their integrals."""
+    w = b.theory.symbols["ω"]
+    first, second = f"logarithm: {name}", f"integral: {name}"
+    b.linked(first, Equation(new, "=", old), "same argument", "the same function", [link])
+    halves = [Definite(log, w, ZERO, Infinity()) for log in (new, old)]
+    b.linked(second, Equation(halves[0], "=", halves[1]), "same argument", "the same integrand", [first])
+
+
 def over_roots(t: Theory, root: Symbol, point: Term) -> Roots:
     """Return the product of (point - root) over a family of roots."""
     family = t.families[root.name]
@@ -370,51 +348,7 @@ def whole(b: ScalarBuilder, body: Term) -> Term:
     return Quotient(ONE, 2 * PI) * Definite(body, b.theory.symbols["ω"], Neg(Infinity()), Infinity())
 
 
-# ------------------------------------------------------------------------------------------------ propositions 1 and 2
-def _derive_function(b: ScalarBuilder) -> None:
-    t = b.theory
-    f, s, zero, pole, i, m = (t.symbols[k] for k in ("f", "s", "φ", "η", "i", "m"))
-    b.heading("A counterpart of Jensen's formula")
-    b.say("Let f have numerator and denominator of the same order, with real coefficients, and let it tend to 1:")
-    b.given("p", "q", "f", "f tends to 1", numbers=("", "", "5", "6"), source=SOURCE)
-    b.state(
-        "f by its roots",
-        Equation(f, "=", Quotient(Roots(s, zero, i, m), Roots(s, pole, i, m))),
-        "both definitions",
-        ["f", "p", "q"],
-    )
-    for root in (zero, pole):
-        derive_root(b, root)
-        derive_family(b, root, reals=1)
-    derive_integral(b, "f", on_axis(t, f), zero, pole, "f by its roots")
-    b.say("Along the reals the same modulus gives the first term of the formula:")
-    limit = HALF * Total(RealPart(pole), i, m) - HALF * Total(RealPart(zero), i, m)
-    first = derive_first_term(b, "f", f, [(zero, 1)], [(pole, 1)], limit, "f by its roots")
-    b.say("Proposition 1, for stable poles; zeros on the imaginary axis are allowed:")
-    b.given("poles are stable")
-    stable = Equation(Abs(RealPart(pole)), "=", Neg(RealPart(pole)))
-    b.equal("stable poles", stable, [f"|Re {pole.name}| ≥ 0", "poles are stable"], reason="the real part is negative")
-    b.linked(
-        "stable poles, summed",
-        Equation(Total(stable.lhs, i, m), "=", Total(stable.rhs, i, m)),
-        "sum over",
-        "summed over the poles",
-        ["stable poles"],
-    )
-    integral, zeros, poles = whole(b, on_axis(t, f)), Total(Max(RealPart(zero)), i, m), Total(Max(RealPart(pole)), i, m)
-    known = ["log-integral of f", "first term of f", "modulus of φ, summed"]
-    b.state(
-        "proposition 1", Equation(integral, "=", first + zeros), "|x| = 2 max(0, x) - x, summed over the zeros",
-        [*known, "stable poles, summed"], number="7", source=SOURCE,
-    )  # fmt: skip
-    b.say("Proposition 2, for any poles:")
-    b.given("f", "f tends to 1", numbers=("9", "10"), source=SOURCE)
-    b.state(
-        "proposition 2", Equation(integral, "=", first + zeros - poles), "|x| = 2 max(0, x) - x, for zeros and poles",
-        [*known, "modulus of η, summed"], number="11", source=SOURCE,
-    )  # fmt: skip
-
-
+# ------------------------------------------------------------------------------------------------ along the reals
 def _along(b: ScalarBuilder, root: Symbol, sign: int) -> Total:
     """Return the sum of ln|s - root|^2 along the reals, or of ln|-s - root|^2."""
     s, i, m = (b.theory.symbols[k] for k in ("s", "i", "m"))

@@ -1,52 +1,27 @@
-"""What follows from theorem 1: bounds on tr P, one output, stable plants, no process noise, unit noise intensity."""
+"""Special cases of theorem 1: one output, stable plants, no process noise, unit noise intensity."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from derive.context import Theory
-from derive.functions import Definite, Infinity, Limit, Log, Max, Quotient
-from derive.spectral import At, Det, Entry, Modulus, RealPart, Total
+from derive.functions import Log, Max, Quotient
+from derive.spectral import At, Det, Entry, RealPart, Total
 from derive.terms import Equation, Glyph, Identity, Neg, Product, Term, Trace, Zero
 from derive.theory.scalar_continuous import ONE, ZERO
 from derive.theory.spectrum_builder import SpectrumBuilder
-from derive.theory.spectrum_filter import (
-    factor,
-    log_spectrum,
-    on_axis,
-    output_cost,
-    resolvent,
-    spectrum_ratio,
-    unstable,
-)
-from derive.theory.spectrum_roots import HALF, SOURCE, axis, over_roots, whole
+from derive.theory.spectrum_filter import log_spectrum, output_cost, resolvent, spectrum_ratio, unstable
+from derive.theory.spectrum_roots import SOURCE, axis, derive_same, over_roots, whole
 
 
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(t: Theory) -> None:
-    """Declare the bounds and the special cases."""
-    C, W, V, P, K, Phi, L = (t.symbols[k] for k in ("C", "W", "V", "P", "K", "Phi_y", "L"))
-    one, size, s = Identity("l"), Identity("m"), t.symbols["s"]
-    t.assume("P >= 0", P, "⪰", Zero("m", "m"), "a covariance")
-    low, high = (
-        t.scalar(n, Glyph("λ", sub=k), nonnegative=True, meaning=f"{w} eigenvalue of C'V^-1C")
-        for n, k, w in (("λmin", "min", "least"), ("λmax", "max", "largest"))
-    )
-    information = C.T * V.inv * C
-    t.assume("least eigenvalue", information - low * size, "⪰", Zero("m", "m"), "the least eigenvalue of C'V⁻¹C")
-    t.assume("largest eigenvalue", high * size - information, "⪰", Zero("m", "m"), "the largest eigenvalue of C'V⁻¹C")
-    t.assume("λmin > 0", low, ">", text="C has full column rank", case=True)
-    t.assume("λmax > 0", high, ">", text="C is not zero", case=True)
-    t.atom("reciprocal", low, "λmin > 0", "1/λmin")
-    t.atom("reciprocal", high, "λmax > 0", "1/λmax")
-    root = t.matrix("V^1/2", "l", "l", Glyph("V", sup="1/2"), symmetric=True, meaning="square root of V")
-    t.assume("root of V > 0", root, "≻", Zero("l", "l"), "the positive definite root")
-    t.inverse("V^-1/2", root, "l", symmetric=True, because="root of V > 0")
-    t.define("root of V", root * root, V)
+    """Declare the special cases."""
+    C, W, V, P, Phi = (t.symbols[k] for k in ("C", "W", "V", "P", "Phi_y"))
+    one, s = Identity("l"), t.symbols["s"]
     variance = t.scalar("σ_v^2", Glyph("σ", sub="v", sup="2"), nonnegative=True, meaning="intensity of one noise")
     t.assume("σ_v^2 > 0", variance, ">", text="the output is noisy")
     t.atom("reciprocal", variance, "σ_v^2 > 0", "1/σ_v^2")
-    t.fact("l = 1", "single", one, "one output", case=True)
     t.assume("V = σ_v^2", V, "=", variance * one, "one intensity", case=True)
     t.assume("σ_v^2 = 1", variance, "=", ONE, "unit intensity", case=True)
     t.assume("V = I", V, "=", one, "unit intensity", case=True)
@@ -54,24 +29,19 @@ def declare(t: Theory) -> None:
     B = t.matrix("B", "m", "1", meaning="input of one process noise")
     t.assume("W = BB'", W, "=", B * B.T, "one process noise of unit intensity", case=True)
     t.assume("A stable", Neg(RealPart(t.symbols["λ"])), ">", text="the plant is stable", case=True)
-    t.assume("CK = 0", C * K, "=", Zero("l", "l"), "all entries of L have two more poles than zeros", case=True)
     Phi_z = t.matrix("Phi_z", "l", "l", Glyph("Φ", sub="z"), show_args=("s",), meaning="spectrum of the true output")
     t.complex.add("Phi_z")
     t.define("Phi_z", Phi_z, C * resolvent(t) * W * resolvent(t, -1).T * C.T)
     for name, body in (
-        ("P", P), ("CPC'", C * P * C.T), ("V", V), ("Phi_y", Phi), ("Phi_z", Phi_z), ("Sigma", t.symbols["Sigma"]),
-        ("response", response(t)), ("symmetric form", root.inv * C * P * C.T * root.inv),
+        ("CPC'", C * P * C.T), ("V", V), ("Phi_y", Phi), ("Phi_z", Phi_z), ("Sigma", t.symbols["Sigma"]),
+        ("response", response(t)),
     ):  # fmt: skip
         t.atom("spectral", Trace(body), name=f"tr {name}")
     t.atom("spectral", Det(Phi_z + V), name="det(Phi_z + V)")
-    t.atom("reciprocal", ONE + Entry(L), "1 + L is regular", "1/(1+L)")
     for name, ratio in ratios(t).items():
         log = Log(At(ratio, s, axis(t)))
         t.atom("spectral", log, name=f"ln {name}")
         t.atom("improper", log, name=f"integral of ln {name}")
-    bode = Quotient(ONE, ONE + Entry(L))
-    t.atom("spectral", on_axis(t, bode), name="ln|1/(1+L)|")
-    t.atom("improper", on_axis(t, bode), name="integral of ln|1/(1+L)|")
 
 
 def response(t: Theory) -> Product:
@@ -94,9 +64,7 @@ def ratios(t: Theory) -> dict[str, Term]:
 
 # ------------------------------------------------------------------------------------------------ derivation
 def derive(b: SpectrumBuilder) -> None:
-    """Derive the bounds and every special case of the source."""
-    _derive_feedback(b)
-    _derive_bounds(b)
+    """Derive every special case of the source."""
     _derive_one_output(b)
     _derive_stable(b)
     _derive_one_input(b)
@@ -107,171 +75,11 @@ def derive(b: SpectrumBuilder) -> None:
 def _relog(b: SpectrumBuilder, name: str, reason: str, using: Sequence[str]) -> Term:
     """Derive that det Phi_y / det V is another function in a special case, and so is the integral of its logarithm."""
     t = b.theory
-    ratio, old, w = ratios(t)[name], spectrum_ratio(t), t.symbols["ω"]
+    ratio = ratios(t)[name]
     log = Log(At(ratio, t.symbols["s"], axis(t)))
-    b.state(f"spectrum: {name}", Equation(ratio, "=", old), reason, using)
-    b.linked(
-        f"logarithm: {name}",
-        Equation(log, "=", log_spectrum(t)),
-        "same argument",
-        "the same function",
-        [f"spectrum: {name}"],
-    )
-    halves = [Definite(x, w, ZERO, Infinity()) for x in (log, log_spectrum(t))]
-    b.linked(
-        f"integral: {name}",
-        Equation(halves[0], "=", halves[1]),
-        "same argument",
-        "the same integrand",
-        [f"logarithm: {name}"],
-    )
+    b.state(f"spectrum: {name}", Equation(ratio, "=", spectrum_ratio(t)), reason, using)
+    derive_same(b, name, log, log_spectrum(t), f"spectrum: {name}")
     return whole(b, log)
-
-
-def _derive_feedback(b: SpectrumBuilder) -> None:
-    t = b.theory
-    C, K, L, s = (t.symbols[k] for k in ("C", "K", "L", "s"))
-    bode, sensitivity = Quotient(ONE, Det(Identity("l") + L)), Quotient(ONE, Det(factor(t)))
-    logs = [Log(Modulus(At(f, s, s))) for f in (bode, sensitivity)]
-    b.heading("The Bode integral: one output, and a faster roll-off")
-    b.linked(
-        "return difference along the reals",
-        Equation(logs[0], "=", logs[1]),
-        "same argument",
-        "the same function",
-        ["return difference"],
-    )
-    b.state(
-        "s ln|1/det(I+L)|", Equation(s * logs[0], "=", s * logs[1]), "the same", ["return difference along the reals"]
-    )
-    roots = [Total(RealPart(t.symbols[n]), t.symbols["i"], t.symbols["m"]) for n in ("μ", "λ")]
-    first = Limit(s * logs[0], s, Infinity())
-    b.linked(
-        "roll-off by roots",
-        Equation(first, "=", roots[0] - roots[1]),
-        "same argument",
-        "as for the sensitivity",
-        ["s ln|1/det(I+L)|"],
-    )
-    b.say("This limit is zero exactly where the output error is, so for a filter it needs more than detectability:")
-    b.state(
-        "roll-off",
-        Equation(first, "=", Neg(output_cost(t))),
-        "the trace of A - KC",
-        ["roll-off by roots", "trace by λ", "trace by μ", "trace of KC"],
-    )
-    b.given("CK = 0")
-    b.state(
-        "no slope", Equation(Trace(C * K), "=", Trace(Zero("l", "l"))), "sL(s) tends to CK", ["CK = 0"], rule="trace"
-    )
-    b.state(
-        "fast roll-off",
-        Equation(first, "=", ZERO),
-        "then tr CK = 0",
-        ["trace by λ", "trace by μ", "trace of KC", "no slope", "trace of CK"],
-        number="23",
-        source=SOURCE,
-    )
-    single = Quotient(ONE, ONE + Entry(L))
-    b.say("For one output a determinant is the number itself:")
-    b.linked("det of one entry", Equation(Det(Identity("l") + L), "=", Entry(Identity("l") + L)), "single", "l = 1", [])
-    b.sign(
-        "1 + L is regular",
-        Equation(ONE + Entry(L), "≠", ZERO),
-        "as before",
-        ["product u(s) μ ≠ 0"],
-        identities=["det of one entry", "factor by its roots", "det(I + L)"],
-    )
-    b.state("one return difference", Equation(single, "=", bode), "l = 1", ["det of one entry"])
-    b.linked(
-        "ln of one return difference",
-        Equation(on_axis(t, single), "=", on_axis(t, bode)),
-        "same argument",
-        "the same function",
-        ["one return difference"],
-    )
-    w = t.symbols["ω"]
-    halves = [Definite(on_axis(t, f), w, ZERO, Infinity()) for f in (single, bode)]
-    b.linked(
-        "integral of one return difference",
-        Equation(halves[0], "=", halves[1]),
-        "same argument",
-        "the same integrand",
-        ["ln of one return difference"],
-    )
-    slope = Limit(HALF * s * Entry(L), s, Infinity())
-    b.state(
-        "Bode integral of one output",
-        Equation(whole(b, on_axis(t, single)), "=", Neg(slope) + unstable(t)),
-        "(20) for l = 1",
-        ["Bode integral of L", "integral of one return difference", "limit of s tr L"],
-        number="22",
-        source=SOURCE,
-    )
-
-
-def _derive_bounds(b: SpectrumBuilder) -> None:
-    t = b.theory
-    C, P, V, root, low, high = (t.symbols[k] for k in ("C", "P", "V", "V^1/2", "λmin", "λmax"))
-    information, size, cost = C.T * V.inv * C, Identity("m"), output_cost(t)
-    b.heading("Bounds on the trace of the error covariance")
-    b.given("P >= 0", "least eigenvalue", "largest eigenvalue")
-    for name, matrix, fact in (
-        ("below", information - low * size, "least eigenvalue"),
-        ("above", high * size - information, "largest eigenvalue"),
-    ):
-        b.positive_number(
-            f"trace {name}",
-            Equation(Trace(matrix * P), "≥", ZERO),
-            "the trace of a product of nonnegative matrices",
-            [fact, "P >= 0"],
-        )
-    b.sign(
-        "lower bound",
-        Equation(cost, "≥", low * Trace(P)),
-        "the trace is linear and cyclic",
-        ["trace below"],
-        number="26",
-        source=SOURCE,
-    )
-    b.state(
-        "symmetric form",
-        Equation(cost, "=", Trace(root.inv * C * P * C.T * root.inv)),
-        "the trace is cyclic",
-        ["root of V", "V^-1", "V^-1/2"],
-        rule="trace",
-        number="26",
-        source=SOURCE,
-    )
-    b.sign(
-        "upper bound",
-        Equation(high * Trace(P), "≥", cost),
-        "the trace is linear and cyclic",
-        ["trace above"],
-        number="26",
-        source=SOURCE,
-    )
-    value = whole(b, log_spectrum(t)) + 2 * unstable(t)
-    b.say("The first bound needs C ≠ 0, the second full column rank of C:")
-    for name, number, fact, bound, left, right in (
-        ("trace at least", "27", "λmax > 0", "upper bound", Trace(P), Quotient(ONE, high) * value),
-        ("trace at most", "28", "λmin > 0", "lower bound", Quotient(ONE, low) * value, Trace(P)),
-    ):
-        scale = high if number == "27" else low
-        b.given(fact)
-        b.sign(
-            f"1/{fact}", Equation(Quotient(ONE, scale), ">", ZERO), "a reciprocal has the sign of its number", [fact]
-        )
-        b.sign(
-            name,
-            Equation(left, "≥", right),
-            "theorem 1",
-            [bound, f"1/{fact}"],
-            identities=["theorem 1"],
-            alone=False,
-            number=number,
-            source=SOURCE,
-        )
 
 
 def _derive_one_output(b: SpectrumBuilder) -> None:
@@ -323,9 +131,7 @@ def _derive_one_output(b: SpectrumBuilder) -> None:
 
 def _derive_stable(b: SpectrumBuilder) -> None:
     t = b.theory
-    C, P, V, Phi, Phi_z, Sigma, variance, root = (
-        t.symbols[k] for k in ("C", "P", "V", "Phi_y", "Phi_z", "Sigma", "σ_v^2", "λ")
-    )
+    V, Phi, Phi_z, Sigma, variance, root = (t.symbols[k] for k in ("V", "Phi_y", "Phi_z", "Sigma", "σ_v^2", "λ"))
     i, m = t.symbols["i"], t.symbols["m"]
     b.heading("A stable plant")
     b.given("A stable", "Phi_z")
@@ -472,8 +278,6 @@ def _derive_unit(b: SpectrumBuilder) -> None:
         "equation (4)",
         ["output error covariance"],
         rule="trace",
-        number="37",
-        source=SOURCE,
     )
     integral = _relog(b, "unit intensity", "V is the identity", ["unit determinant"])
     b.state(
