@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from derive.context import DeclaredFact
@@ -10,6 +10,7 @@ from derive.derivation import Proof, Rule, Step, Text
 from derive.functions import Limit, is_scalar, value
 from derive.kernel import Poly, Rejected
 from derive.kernel import Term as Addend
+from derive.real import scalars_of
 from derive.spectral import Entry
 from derive.terms import Equation, Reading, walk
 from derive.theory.builder import Builder
@@ -56,8 +57,26 @@ class SpectrumBuilder(ScalarBuilder):
 
     def _limits(self, read: Sequence[Limit]) -> list[str]:
         """Return the steps without which limits are not known."""
-        known = [n for n in read if self._readable(n, self.reading)]
-        return [name for name in self.steps if known and not all(self._readable(n, self._without(name)) for n in known)]
+        found: list[str] = []
+        for term in (n for n in read if self._readable(n, self.reading)):
+            scalars = self._moving(term)
+            near = [n for n, first in self._known(term) if n not in found and first <= scalars]
+            found += [n for n in near if not self._readable(term, self._without(n))]
+        return found
+
+    def _known(self, term: Limit) -> Iterator[tuple[str, set[str]]]:
+        """Iterate over steps that are limits as the same variable tends to the same point, with their first product."""
+        for name, step in self.steps.items():
+            lhs = step.statement.lhs
+            if isinstance(lhs, Limit) and (lhs.symbol, lhs.point) == (term.symbol, term.point):
+                (m, _), *_ = value(lhs.body, self.reading).terms
+                yield name, {s for s in m if self.reading.real.varies(s, term.symbol.name)}
+
+    def _moving(self, term: Limit) -> set[str]:
+        """Return the scalars in a limit that depend on its variable."""
+        real = self.reading.real
+        body = real.unfold(value(term.body, self.reading))
+        return {s for s in scalars_of(body) if real.varies(s, term.symbol.name)}
 
     def _without(self, name: str) -> Reading:
         """Return the reading without the limit that a step has proved."""
