@@ -85,9 +85,9 @@ def _caption(plant: Plant, curve: OutputSpectrum) -> Inline:
     """Return why the area is honest, and the numbers that add up."""
     drawn = "ω/π times the logarithm, over a logarithmic axis" if plant.is_continuous else "1/π times the logarithm"
     cost = Trace(C * P * C.T * V.inv) if plant.is_continuous else formula(plant)[0]
-    cross = f" {_signed(-curve.cross_term)} (cross term)" if curve.cross_term else ""
+    cross = f" {_signed(-curve.cross_term)} (cross term, from the left)" if curve.cross_term else ""
     return (
-        f"The curve is {drawn}, so that the area under it is the integral with its factor. "
+        f"The curve is {drawn}, so that the area under it is the first term on the right. "
         f"{_number(curve.area)} (area) {_signed(curve.unstable_term)} (unstable poles){cross} = ",
         cost,
         f" = {_number(curve.total)}.",

@@ -113,7 +113,7 @@ def spectrum_area(
         total: label of the sum.
         continuous: whether time is.
     """
-    with _drawing(7.0, 3.1, widths=(4.0, 0.55 * len(blocks) + 0.55)) as (figure, (left, right)):
+    with _drawing(7.0, 3.1, widths=(4.0, 0.75 * len(blocks) + 0.3)) as (figure, (left, right)):
         left.fill_between(frequencies, heights, color=COLOURS[0], alpha=0.25, lw=0)
         left.plot(frequencies, heights, color=COLOURS[0], lw=1.6)
         if continuous:

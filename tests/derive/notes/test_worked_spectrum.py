@@ -45,7 +45,7 @@ def test_the_numbers_of_the_caption_add_up(time, cross):
     caption = text_of(figure.caption)
     assert ("logarithmic axis" in caption) == (time == "continuous")
     area, poles, *rest = [
-        float(x.replace("−", "-")) for x in NUMBER.findall(caption.split("factor. ")[1].split(" = ")[0])
+        float(x.replace("−", "-")) for x in NUMBER.findall(caption.split("right. ")[1].split(" = ")[0])
     ]
     total = float(NUMBER.findall(caption)[-1].replace("−", "-"))
     proved = {key: float(validation["enclosure"][key]["value"]) for key in ("output", "unstable_term", "cross_term")}
