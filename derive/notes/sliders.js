@@ -29,23 +29,41 @@ function shown(x) {
 // ---------------------------------------------------------------------------------------------------- the filters
 /** Return the values of the filter in continuous time, and in words what is special about them. */
 function continuous(p) {
-  const K = care_gain(p.A, p.C, p.W, p.V);
+  const plant = [p.A, p.C, p.W, p.V];
+  const P = care_covariance(...plant);
   return {
     values: {
-      P: care_covariance(p.A, p.C, p.W, p.V),
-      K,
-      loop: Number.isNaN(K) ? NaN : care_closed_loop(p.A, p.C, p.W, p.V),
-      end: riccati_transient(p.A, p.C, p.W, p.V, p.P0, p.T),
-      limit: limit(p),
+      P,
+      K: care_gain(...plant),
+      loop: care_closed_loop(...plant),
+      end: riccati_transient(...plant, p.P0, p.T),
+      limit: limit(p, p.W, p.A === 0, P),
     },
     words: p.C === 0 ? unseen(p) : p.W === 0 ? unexcited(p) : "",
   };
 }
 
-/** Return what P(t) tends to, NaN if it grows without bound. */
-function limit(p) {
-  const stays = p.W === 0 && (p.P0 === 0 || (p.A === 0 && p.C === 0));
-  return stays ? p.P0 : care_covariance(p.A, p.C, p.W, p.V);
+/** Return the values of the filter in discrete time, and in words what is special about them. */
+function discrete(p) {
+  const plant = [p.A, p.C, p.Q, p.R];
+  const M = dare_covariance(...plant);
+  return {
+    values: {
+      M,
+      plus: dare_filtered_covariance(...plant),
+      L: dare_gain(...plant),
+      loop: dare_closed_loop(...plant),
+      end: riccati_recursion(...plant, p.P0, p.T),
+      limit: limit(p, p.Q, Math.abs(p.A) === 1, M),
+    },
+    words: p.C === 0 ? unseenSteps(p) : p.Q === 0 ? unexcitedSteps(p) : p.A === 0 ? FORGETFUL : "",
+  };
+}
+
+/** Return what the covariance tends to, NaN if it grows without bound; some starts stay what they are. */
+function limit(p, noise, boundary, steady) {
+  const stays = noise === 0 && (p.P0 === 0 || (boundary && p.C === 0));
+  return stays ? p.P0 : steady;
 }
 
 function unseen(p) {
@@ -70,25 +88,30 @@ function unexcited(p) {
   return "W = 0: nothing excites the unstable state. The optimal gain mirrors the pole: A − KC = −A.";
 }
 
-/** Return the values of the filter in discrete time, and in words what is special about them. */
-function discrete(p) {
-  const M = dare_covariance(p.A, p.C, p.Q, p.R);
-  return { values: { M, plus: dare_filtered_covariance(p.A, p.C, p.Q, p.R) }, words: discreteWords(p) };
+const FORGETFUL = "A = 0: the state keeps nothing of its past, and one step leads to the steady covariance.";
+
+function unseenSteps(p) {
+  const size = Math.abs(p.A);
+  if (size < 1) return "C = 0: the output does not see the state, and the gain is 0. The state is stable by itself.";
+  const none =
+    "Not defined here: C = 0, so the output does not see the state, and |A| ≥ 1, so the state is not stable by " +
+    "itself. No gain makes the error stable, and there is no steady covariance. ";
+  if (p.Q === 0 && p.P0 === 0) return none + "Started without error and not excited, the covariance stays 0.";
+  if (p.Q === 0 && size === 1) return none + "Nothing drives the state: the covariance stays what it was.";
+  return none + "The covariance grows without bound.";
 }
 
-function discreteWords(p) {
+function unexcitedSteps(p) {
   const size = Math.abs(p.A);
-  if (p.C === 0 && size >= 1)
+  if (size < 1) return "Q = 0: nothing excites the stable state. Its error dies out by itself, and the gain is 0.";
+  if (size === 1 && p.P0 === 0) return "Q = 0, |A| = 1: a double root, at 0. Started without error, it stays 0.";
+  if (size === 1) return "Q = 0, |A| = 1: a double root, at 0. The covariance falls to it like 1/k, not exponentially.";
+  if (p.P0 === 0)
     return (
-      "Not defined here: C = 0, so the output does not see the state, and |A| ≥ 1, so the state is not stable by " +
-      "itself. No gain makes the error stable, and there is no steady covariance."
+      "Q = 0, no error at the start: the state is unstable but neither excited nor uncertain, and the covariance stays " +
+      "0. The smallest error at the start would lead to the stabilising solution instead."
     );
-  if (p.C === 0) return "C = 0: the output does not see the state, and a measurement changes nothing.";
-  if (p.Q === 0 && size === 1) return "Q = 0, |A| = 1: a double root, at 0.";
-  if (p.Q === 0 && size < 1) return "Q = 0: nothing excites the stable state, and its error dies out by itself.";
-  if (p.Q === 0) return "Q = 0: nothing excites the unstable state; the optimal gain mirrors the pole to 1/A.";
-  if (p.A === 0) return "A = 0: the state keeps nothing of its past, and what is predicted is as uncertain as the noise.";
-  return "";
+  return "Q = 0: nothing excites the unstable state. The optimal gain mirrors the pole: A − LC = 1/A.";
 }
 
 // ---------------------------------------------------------------------------------------------------- samples
@@ -98,6 +121,11 @@ function sample(f, [low, high], power = 1) {
     const x = low + (high - low) * Math.pow(i / SAMPLES, power);
     return [x, f(x)];
   });
+}
+
+/** Return the values of a sequence, from 0 to the last step. */
+function sequence(f, last) {
+  return Array.from({ length: last + 1 }, (_, k) => [k, f(k)]);
 }
 
 /** Return the intervals in which a function is not defined. */
@@ -121,7 +149,7 @@ function height(curves, others) {
   return 1.12 * Math.max(...tops, ...others.filter(Number.isFinite), 0) || 1;
 }
 
-/** Return some round numbers between two, ``most`` or a few more. */
+/** Return round numbers between two, at most ``most`` and one. */
 function ticks(low, high, most) {
   const rough = (high - low) / most;
   const unit = Math.pow(10, Math.floor(Math.log10(rough)));
@@ -159,6 +187,9 @@ function drawing(plot) {
     out.push(text(right - 2, y(level.y) + (y(level.y) < top + 20 ? 15 : -5), level.label, "end"));
   }
   plot.curves.forEach((points, i) => out.push(`<path class="curve c${i}" d="${line(points, x, y, max)}"/>`));
+  for (const [u, v] of (plot.dots ? plot.curves[0] : []).filter((point) => point[1] <= max)) {
+    out.push(`<circle class="dot c0" cx="${x(u)}" cy="${y(v)}" r="2.6"/>`);
+  }
   const marks = plot.marks.filter((mark) => Number.isFinite(mark.y));
   const [dx, anchor] = plot.rising && x(plot.at) > left + 90 ? [-9, "end"] : [9, "start"];
   const heights = apart(marks.map((mark) => y(mark.y) - 8));
@@ -197,6 +228,21 @@ function round(v) {
   return Math.round(10 * v) / 10;
 }
 
+/** Return what both transients show: the start, the limit, and the steady covariance where it is not reached. */
+function transient(p, steady, limit) {
+  const missed = steady !== limit && !Number.isNaN(steady);
+  const end = Number.isNaN(limit) ? "it grows without bound." : `its limit is ${shown(limit)}.`;
+  return {
+    range: [0, p.T],
+    marks: [{ x: 0, y: p.P0, label: "" }],
+    levels: [
+      { y: limit, label: `limit ${shown(limit)}` },
+      ...(missed ? [{ y: steady, label: `steady ${shown(steady)}, not reached` }] : []),
+    ],
+    words: `Covariance over time, from ${shown(p.P0)} at the start; ${end}`,
+  };
+}
+
 /** Return the drawings of a panel by name, each with what it shows in words. */
 const PLOTS = {
   continuous: (p, { P, limit }) => ({
@@ -207,19 +253,11 @@ const PLOTS = {
       words: `Error covariance P over A; at A = ${shown(p.A)} it is ${shown(P)}.`,
     },
     time: {
-      range: [0, p.T], xlabel: "t", ylabel: "P(t)",
+      ...transient(p, P, limit), xlabel: "t", ylabel: "P(t)",
       curves: [sample((t) => riccati_transient(p.A, p.C, p.W, p.V, p.P0, t), [0, p.T], 2)],
-      marks: [{ x: 0, y: p.P0, label: "" }],
-      levels: [
-        { y: limit, label: `limit ${shown(limit)}` },
-        ...(P !== limit && !Number.isNaN(P) ? [{ y: P, label: `P = ${shown(P)}, not reached` }] : []),
-      ],
-      words:
-        `P(t) from ${shown(p.P0)} at the start; ` +
-        (Number.isNaN(limit) ? "it grows without bound." : `its limit is ${shown(limit)}.`),
     },
   }),
-  discrete: (p, { M, plus }) => ({
+  discrete: (p, { M, plus, limit }) => ({
     state: {
       range: RANGE, at: p.A, rising: p.A > 0, xlabel: "A", ylabel: "covariance",
       curves: [
@@ -232,6 +270,10 @@ const PLOTS = {
       ],
       levels: [],
       words: `Over A, at A = ${shown(p.A)}: before the measurement ${shown(M)}, after it ${shown(plus)}.`,
+    },
+    time: {
+      ...transient(p, M, limit), xlabel: "k", ylabel: "covariance", dots: true,
+      curves: [sequence((k) => riccati_recursion(p.A, p.C, p.Q, p.R, p.P0, k), p.T)],
     },
   }),
 };

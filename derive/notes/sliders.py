@@ -22,7 +22,7 @@ from derive.notes.model import Display, Inline, Link, Para, Row, Section, slug
 from derive.terms import Dot, Equation, Glyph, Symbol
 
 if TYPE_CHECKING:
-    from derive.scalar.formula import Formula
+    from derive.scalar.formula import Formula, Known
 
 __all__ = ["PANELS", "Panel", "Slider", "script", "slider_page"]
 
@@ -97,7 +97,8 @@ def _continuous(symbol: Callable[[str], Symbol]) -> Panel:
         (
             "A state ", Equation(Dot(x), "=", A * x + w), " and an output ", Equation(y, "=", C * x + v),
             " with white noises of intensity ", W, " and ", V, "; ", P, " is the steady error covariance, ", K,
-            " the gain, and ", later, ", drawn as P(t), the covariance after a time t from the start ", start, ".",
+            " the gain, and ", later, ", drawn as P(t), the covariance after a time ", symbol("t"),
+            " from the start ", start, ".",
         ),
         ("g", "S"),
         ("care_covariance", "care_gain", "care_closed_loop", "riccati_transient"),
@@ -123,25 +124,36 @@ def _continuous(symbol: Callable[[str], Symbol]) -> Panel:
 
 
 def _discrete(symbol: Callable[[str], Symbol]) -> Panel:
-    A, C, Q, R, M, plus = map(symbol, ("A", "C", "Q", "R", "M", "M+"))
+    A, C, Q, R, L, M, plus, start, later = map(symbol, ("A", "C", "Q", "R", "L", "M", "M+", "P0", "P_k"))
     x, y, w, v = map(_letter, "xywv")
     return Panel(
         "discrete", "Discrete time",
         (
             "A state that becomes ", A * x + w, " in each step and an output ", Equation(y, "=", C * x + v),
             " with white noises of covariance ", Q, " and ", R, "; ", M, " is the steady error covariance before a "
-            "measurement, ", plus, " after it.",
+            "measurement, ", plus, " after it, ", L, " the gain, and ", later, " the covariance before a measurement "
+            "after ", symbol("k"), " steps from the start ", start, ".",
         ),
-        ("b", "T"), ("dare_covariance", "dare_filtered_covariance"),
+        ("b", "T", "λ", "ρ"),
+        ("dare_covariance", "dare_filtered_covariance", "dare_gain", "dare_closed_loop", "riccati_recursion"),
         (
             Slider("A", "", -60, 60, 24), Slider("C", "[output]/[state]", -40, 40, 20),
             Slider("Q", "[state]²", 0, 100, 20), Slider("R", "[output]²", -40, 20, 0, decades=True),
+            Slider("P0", "[state]²", 0, 100, 80), Slider("T", "steps", 1, 40, 10, per=1),
         ),
-        (("M", (M,), "[state]²"), ("plus", (plus,), "[state]²")),
-        (("state", "Steady error covariance over A, before and after the measurement."),),
+        (
+            ("M", (M,), "[state]²"), ("plus", (plus,), "[state]²"), ("L", (L,), "[state]/[output]"),
+            ("loop", (A - L * C,), ""), ("end", (later, " at the horizon"), "[state]²"),
+            ("limit", ("limit of ", later), "[state]²"),
+        ),
+        (
+            ("state", "Steady error covariance over A, before and after the measurement."),
+            ("time", "Error covariance after each step, from the start; dashed, what it tends to."),
+        ),
         {
             "unstable": {}, "stable": {"A": 0.5}, "no memory": {"A": 0}, "unstable, not excited": {"A": 1.5, "Q": 0},
-            "double root": {"A": 1, "Q": 0}, "unseen, stable": {"A": 0.5, "C": 0}, "unseen, unstable": {"C": 0},
+            "not excited, no error": {"A": 1.5, "Q": 0, "P0": 0}, "double root": {"A": 1, "Q": 0, "T": 40},
+            "unseen, stable": {"A": 0.5, "C": 0}, "unseen, unstable": {"C": 0},
         },
     )  # fmt: skip
 
@@ -165,8 +177,8 @@ def slider_page(outcomes: Sequence[Outcome], proofs: str = "", back: str = "") -
 
     current = lecture("scalar")
     panels = [make(current.theory.symbols.__getitem__) for make in PANELS]
-    accepted = {o.step for o in outcomes if o.accepted}
-    body = "\n".join(_section(panel, current, accepted, proofs) for panel in panels)
+    complaints = _complaints(panels, frozenset(o.step for o in outcomes if o.accepted))
+    body = "\n".join(_section(panel, current, complaints, proofs) for panel in panels)
     subtitle = (Link("All lectures", "", back), " · ") if back else ()
     about = Link(current.title, "", proofs) if proofs else current.title
     return whole_page(
@@ -186,11 +198,11 @@ def script(panels: Sequence[Panel]) -> str:
     return "\n".join((*(formula(name).to_javascript() for name in names), resource("sliders.js")))
 
 
-def _section(panel: Panel, lecture: Lecture, accepted: set[str], proofs: str) -> str:
+def _section(panel: Panel, lecture: Lecture, complaints: Mapping[str, str], proofs: str) -> str:
     from derive.scalar.library import formula
 
     rows = [_definition(name, lecture, panel.key) for name in panel.definitions]
-    rows += [_row(formula(name), accepted, proofs) for name in panel.formulas]
+    rows += [_row(formula(name), complaints[name], proofs) for name in panel.formulas]
     blocks = (Section(panel.title, 1, panel.key), Para(panel.about), Display(tuple(rows)))
     return "\n".join((*map(block, blocks), _controls(panel, lecture)))
 
@@ -199,12 +211,11 @@ def _definition(name: str, lecture: Lecture, panel: str) -> Row:
     declared = lecture.theory.declared[name]
     assert isinstance(declared, Declared)
     said = declared.statement
-    return Row(said.lhs, said.relation, said.rhs, slug(panel, name), badge=declared.kind)
+    return Row(said.lhs, said.relation, said.rhs, slug(panel, "where", name), badge=declared.kind)
 
 
-def _row(formula: Formula, accepted: set[str], proofs: str) -> Row:
-    """Show a formula; it is proved if every step behind it and behind its program is accepted."""
-    message = _complaint(formula, accepted)
+def _row(formula: Formula, message: str, proofs: str) -> Row:
+    """Show a formula; it is proved if there is no complaint."""
     defined = f"defined: {formula.defined.replace('>=', '≥')}"
     link = ("; ", Link("proof", slug("scalar", formula.step), proofs)) if proofs else ()
     said = formula.statement
@@ -214,14 +225,21 @@ def _row(formula: Formula, accepted: set[str], proofs: str) -> Row:
     )  # fmt: skip
 
 
-def _complaint(formula: Formula, accepted: set[str]) -> str:
-    lost = [step.name for step in formula.derivation if step.name not in accepted]
-    if lost:
-        return f"the step {lost[0]!r} is not accepted"
+def _complaints(panels: Sequence[Panel], accepted: frozenset[str]) -> dict[str, str]:
+    """Return what keeps each formula from being proved: a step that is not accepted, a program that says otherwise."""
+    from derive.scalar.formula import behind
+    from derive.scalar.library import formula
+
+    formulas = [formula(name) for panel in panels for name in panel.formulas]
+    known = behind(formulas, accepted)
+    return {made.name: _complaint(made, known) for made in formulas}
+
+
+def _complaint(formula: Formula, known: Known) -> str:
     try:
-        formula.check()
+        formula.check(known)
     except InputError as error:
-        return str(error)
+        return str(error).removeprefix(f"{formula.name}: ")
     return ""
 
 

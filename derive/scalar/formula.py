@@ -6,7 +6,7 @@ cancellation. Each branch of the program is the side of a proved step; ``check``
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -19,7 +19,7 @@ from derive.kernel import Rejected
 from derive.scalar.program import Program
 from derive.terms import Equation, Number, Product, Reading, Symbol, Term, Zero
 
-__all__ = ["Formula", "Sequence", "learned"]
+__all__ = ["Formula", "Sequence", "behind", "learned"]
 
 ONE = Number(Fraction(1))
 
@@ -125,14 +125,17 @@ class Formula:
         """Return JavaScript source text."""
         return self.program.to_javascript()
 
-    def check(self) -> None:
-        """Replay the lecture, and compare every branch of the program with the side of the step that proves it.
+    def check(self, known: Known | None = None) -> None:
+        """Compare every branch of the program with the side of the step that proves it.
+
+        Args:
+            known: what a replay accepted, from ``behind``; None replays the whole lecture.
 
         Raises:
             InputError: a step is not accepted, or a branch computes something else than its step says.
         """
         lecture = self.lecture()
-        reading, accepted = learned(lecture.key)
+        reading, accepted = known or learned(lecture.key)
         lost = [s.name for s in self.derivation if s.name not in accepted]
         if lost:
             raise InputError(f"{self.name}: the step {lost[0]!r} is rejected")
@@ -160,19 +163,44 @@ class Formula:
                 raise InputError(f"{self.name}: {sequence.letter.name} is not the sequence that the program computes")
 
 
+Known = tuple[Reading, frozenset[str]]  # what may be used, and the steps that were accepted
+
+
 @cache
-def learned(key: str) -> tuple[Reading, frozenset[str]]:
+def learned(key: str) -> Known:
     """Return what may be used at the end of a lecture, and the steps that were replayed and accepted."""
-    from derive.derivation import learn, verify
     from derive.theory import lecture
 
     current = lecture(key)
-    accepted = {o.step for o in verify(current.theory, current.steps) if o.accepted}
-    reading = current.theory.reading()
-    for step in current.steps:
-        if step.name in accepted:
-            reading = learn(reading, current.theory, step)
-    return reading, frozenset(accepted)
+    accepted = frozenset(o.step for o in current.verify() if o.accepted)
+    return _after(current, accepted), accepted
+
+
+def behind(formulas: Iterable[Formula], accepted: frozenset[str]) -> Known:
+    """Return what may be used after those steps behind some formulas of a lecture that a replay accepted."""
+    formulas = list(formulas)
+    lecture = formulas[0].lecture()
+    steps = {step.name: step for step in lecture.steps}
+    needed, open_ = set[str](), [step.name for formula in formulas for step in formula.derivation]
+    while open_:
+        name = open_.pop()
+        if name not in needed:
+            needed.add(name)
+            because = getattr(lecture.theory.declared.get(name), "because", ())
+            open_ += [because] if isinstance(because, str) else because
+            open_ += (*steps[name].uses, *steps[name].proof.links) if name in steps else ()
+    return _after(lecture, accepted & needed), accepted
+
+
+def _after(lecture: Lecture, names: frozenset[str]) -> Reading:
+    """Return what may be used after some steps of a lecture."""
+    from derive.derivation import learn
+
+    reading = lecture.theory.reading()
+    for step in lecture.steps:
+        if step.name in names:
+            reading = learn(reading, lecture.theory, step)
+    return reading
 
 
 def _same(one: Term, two: Term, reading: Reading) -> bool:

@@ -9,6 +9,7 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 import quickjs
 
@@ -18,6 +19,7 @@ from derive.notes.sliders import PANELS, script, slider_page
 from derive.scalar import library
 from derive.theory import lecture, theory
 
+STEPS = (1, 40)
 GRID = {
     "A": (-3.0, -1.0, -0.05, 0.0, 0.05, 1.0, 3.0), "C": (-2.0, 0.0, 0.05, 1.0), "W": (0.0, 0.05, 5.0),
     "V": (0.01, 1.0, 10.0), "P0": (0.0, 0.05, 5.0), "T": (0.5, 20.0), "Q": (0.0, 0.05, 5.0), "R": (0.01, 1.0, 10.0),
@@ -52,7 +54,8 @@ ODD = 'typeof v === "number" && !Number.isFinite(v) ? String(v) : v'
 
 def points(panel):
     names = [s.symbol for s in panel.sliders]
-    return [dict(zip(names, values, strict=True)) for values in itertools.product(*(GRID[n] for n in names))]
+    grid = {**GRID, "T": STEPS} if panel.key == "discrete" else GRID
+    return [dict(zip(names, values, strict=True)) for values in itertools.product(*(grid[n] for n in names))]
 
 
 def evaluated(js, panel):
@@ -66,41 +69,45 @@ def agree(one, two):
 
 
 # ------------------------------------------------------------------------------------------------ values
-def test_continuous_values_are_those_of_python(js, panels):
-    P, K, loop, later = (library.formula(n).to_numpy() for n in panels["continuous"].formulas)
-    undefined = 0
-    for p, found in evaluated(js, panels["continuous"]):
-        plant = p["A"], p["C"], p["W"], p["V"]
-        values = found["values"]
-        assert agree(P(*plant), values["P"]), p
-        assert agree(K(*plant), values["K"]), p
-        assert agree(later(*plant, p["P0"], p["T"]), values["end"]), p
-        assert agree(math.nan if math.isnan(K(*plant)) else loop(*plant), values["loop"]), p
-        undefined += values["P"] == "NaN"
-        assert (values["P"] == "NaN") == (p["C"] == 0 and p["A"] >= 0)
-    assert undefined > 100
+KEYS = {"continuous": ("P", "K", "loop", "end"), "discrete": ("M", "plus", "L", "loop", "end")}
 
 
-def test_the_limit_is_what_the_transient_tends_to(js, panels):
-    later = library.formula("riccati_transient").to_numpy()
+def undefined(key, p):
+    return p["C"] == 0 and (p["A"] >= 0 if key == "continuous" else abs(p["A"]) >= 1)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_values_are_those_of_python(js, panels, key):
+    found = [values["values"] for _, values in evaluated(js, panels[key])]
+    where = {name: np.array(column) for name, column in zip(points(panels[key])[0], columns(panels[key]), strict=True)}
+    where = {**where, "t": where["T"], "k": where["T"]}
+    for name, formula in zip(KEYS[key], panels[key].formulas, strict=True):
+        made = library.formula(formula)
+        wanted = made.to_numpy()(*(where[s.name] for s in made.program.arguments))
+        for p, value, other in zip(points(panels[key]), wanted, (values[name] for values in found), strict=True):
+            assert agree(value, other), (name, p, value, other)
+            assert math.isnan(value) == (name != "end" and undefined(key, p)), (name, p)
+
+
+def columns(panel):
+    return zip(*(p.values() for p in points(panel)), strict=True)
+
+
+@pytest.mark.parametrize(("key", "late"), [("continuous", 1e12), ("discrete", 1e12)])
+def test_the_limit_is_what_the_transient_tends_to(js, panels, key, late):
+    formula = library.formula(panels[key].formulas[-1])
+    later, names = formula.to_numpy(), [s.name for s in formula.program.arguments[:-1]]
     seen = set()
-    for p, found in evaluated(js, panels["continuous"]):
-        late = float(later(p["A"], p["C"], p["W"], p["V"], p["P0"], 1e12))
+    for p, found in evaluated(js, panels[key]):
+        value, words = float(later(*(p[name] for name in names), late)), found["words"]
         shown = float(found["values"]["limit"])
-        assert (not late < 1e9) == math.isnan(shown), p
-        assert math.isnan(shown) or abs(late - shown) <= 1e-8 * max(1, shown), p
-        assert ("grows without bound" in found["words"]) == math.isnan(shown), p
-        seen.add((math.isnan(shown), shown == 0, "stays 0" in found["words"], "stays at P(0)" in found["words"]))
+        assert (not value < 1e9) == math.isnan(shown), p
+        assert math.isnan(shown) or abs(value - shown) <= 1e-8 * max(1, shown), p
+        assert ("grows without bound" in words) == math.isnan(shown), p
+        assert "stays 0" not in words or shown == p["P0"] == 0, p
+        assert "Nothing drives the state" not in words or shown == p["P0"], p
+        seen.add((math.isnan(shown), shown == 0, "stays 0" in words, "Nothing drives the state" in words))
     assert len(seen) == 5
-
-
-def test_discrete_values_are_those_of_python(js, panels):
-    before, after = (library.formula(n).to_numpy() for n in panels["discrete"].formulas)
-    for p, found in evaluated(js, panels["discrete"]):
-        plant = p["A"], p["C"], p["Q"], p["R"]
-        assert agree(before(*plant), found["values"]["M"]), p
-        assert agree(after(*plant), found["values"]["plus"]), p
-        assert (found["values"]["M"] == "NaN") == (p["C"] == 0 and abs(p["A"]) >= 1)
 
 
 def test_the_curves_are_the_formulas(js):
@@ -113,11 +120,10 @@ def test_the_curves_are_the_formulas(js):
     assert plots["time"]["curves"][0][-1][0] == 4
 
 
-@pytest.mark.parametrize("key", ["continuous", "discrete"])
+@pytest.mark.parametrize("key", KEYS)
 def test_what_is_not_defined_is_said_in_words(js, panels, key):
-    main = {"continuous": "P", "discrete": "M"}[key]
     for p, found in evaluated(js, panels[key]):
-        assert (found["values"][main] == "NaN") == found["words"].startswith("Not defined here: C = 0"), p
+        assert undefined(key, p) == found["words"].startswith("Not defined here: C = 0"), p
         assert bool(found["words"]) >= (p["C"] == 0 or p.get("W", p.get("Q")) == 0)
 
 
@@ -132,10 +138,13 @@ def test_what_is_not_defined_is_said_in_words(js, panels, key):
         ("continuous", {"A": 1.0, "W": 0.0, "P0": 0.0}, "P(t) stays 0"),
         ("continuous", {"A": 0.0, "W": 0.0, "C": 0.0}, "P(t) stays at P(0)"),
         ("continuous", {}, ""),
-        ("discrete", {"A": 0.5, "C": 0.0}, "changes nothing"),
-        ("discrete", {"A": -1.0, "Q": 0.0}, "double root"),
-        ("discrete", {"A": 0.5, "Q": 0.0}, "stable state"),
-        ("discrete", {"A": 2.0, "Q": 0.0}, "mirrors the pole to 1/A"),
+        ("discrete", {"A": 0.5, "C": 0.0}, "the gain is 0"),
+        ("discrete", {"A": -1.0, "Q": 0.0}, "double root, at 0. The covariance falls to it like 1/k"),
+        ("discrete", {"A": -1.0, "Q": 0.0, "P0": 0.0}, "double root, at 0. Started without error"),
+        ("discrete", {"A": 0.5, "Q": 0.0}, "dies out by itself, and the gain is 0"),
+        ("discrete", {"A": 2.0, "Q": 0.0}, "A − LC = 1/A"),
+        ("discrete", {"A": 2.0, "Q": 0.0, "P0": 0.0}, "the covariance stays 0"),
+        ("discrete", {"A": -1.0, "Q": 0.0, "C": 0.0}, "stays what it was"),
         ("discrete", {"A": 0.0}, "nothing of its past"),
         ("discrete", {}, ""),
     ],
@@ -180,7 +189,7 @@ def test_numbers_as_text(js, value, text):
 
 
 # ------------------------------------------------------------------------------------------------ drawings
-@pytest.mark.parametrize("key", ["continuous", "discrete"])
+@pytest.mark.parametrize("key", KEYS)
 def test_every_drawing_is_made_of_numbers(js, panels, key):
     panel = panels[key]
     drawn = js(
@@ -194,9 +203,9 @@ def test_every_drawing_is_made_of_numbers(js, panels, key):
             corners = [(float(x), float(y)) for x, y in re.findall(r"[ML](-?[\d.]+) (-?[\d.]+)", numbers)]
             assert all(46 <= x <= 388 and 26 <= y <= 236 for x, y in corners), p
         assert (">not defined<" in svg) == (p["C"] == 0)
-        undefined = p["C"] == 0 and (p["A"] >= 0 if key == "continuous" else abs(p["A"]) >= 1)
-        steady, start = (1, 1) if key == "continuous" else (2, 0)
-        assert svg.count("<circle") == steady * (not undefined) + start
+        steady = {"continuous": 1, "discrete": 2}[key] * (not undefined(key, p))
+        assert svg.count(' r="4.5"') == steady + 1
+        assert svg.count(' r="2.6"') == (p["T"] + 1) * (key == "discrete")
 
 
 def test_the_circle_is_on_the_curve(js):
@@ -252,7 +261,7 @@ def test_every_slider_has_a_label_and_every_drawing_words(page):
     ids = [a["id"] for _, a in elements.seen if "id" in a]
     assert len(ids) == len(set(ids))
     inputs = elements.all("input", type="range")
-    assert len(inputs) == 10
+    assert len(inputs) == 12
     for a in inputs:
         assert elements.all("label", **{"for": a["id"]})
         assert elements.all("output", **{"for": a["id"]})
@@ -352,7 +361,7 @@ def test_a_badge_comes_from_the_replay(outcomes):
     lost = [replace(o, accepted=o.step != "solution of an integrator") for o in outcomes]
     found = badges(slider_page(lost))
     assert {name for name, badge in found.items() if badge != "proved"} == {"riccati_transient"}
-    assert "the step &#x27;solution of an integrator&#x27; is not accepted" in slider_page(lost)
+    assert "the step &#x27;solution of an integrator&#x27; is rejected" in slider_page(lost)
     assert set(badges(slider_page([])).values()) == {"not proved"}
 
 
