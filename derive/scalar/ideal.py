@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
+from struct import unpack
 
 from derive.kernel import ANY, Poly, Term
 from derive.real import scalars_of
@@ -20,12 +21,17 @@ __all__ = ["Form", "Ideal"]
 Number = int | Fraction
 Form = dict[int, Number]  # coefficients by monomial
 Steps = list[tuple[int, int, Number]]  # source, monomial, coefficient
-BITS = 16  # for an exponent; the highest of them stays free
+BITS = 16  # for an exponent, an unsigned short of struct; the highest of them stays free
 
 
 def whole(c: Number) -> Number:
     """Return a rational number as an integer if it is one; integers are faster."""
     return c.numerator if isinstance(c, Fraction) and c.denominator == 1 else c
+
+
+def exact(c: Number, d: Number) -> Number:
+    """Divide."""
+    return whole(Fraction(c) / d)
 
 
 def multiply(one: Form, two: Form) -> Form:
@@ -62,6 +68,7 @@ class Ideal:
     def __post_init__(self) -> None:
         """Take up the relations."""
         names = list(dict.fromkeys([*self.order, *(s for p in self.relations.values() for s in sorted(scalars_of(p)))]))
+        self.names = names
         self.unit = {name: 1 << BITS * i for i, name in enumerate(names)}
         self.guard = sum(u << BITS - 1 for u in self.unit.values())
         self.deadline = time.monotonic() + self.seconds
@@ -78,10 +85,8 @@ class Ideal:
 
     def scalars(self, monomial: int) -> tuple[str, ...]:
         """Return the scalars of a monomial in the kernel's order."""
-        return tuple(sorted(s for i, s in enumerate(self.unit) for _ in range(self._exponent(monomial, i))))
-
-    def _exponent(self, monomial: int, i: int) -> int:
-        return monomial >> BITS * i & (1 << BITS) - 1
+        exponents = unpack(f"<{len(self.names)}H", monomial.to_bytes(BITS // 8 * len(self.names), "little"))
+        return tuple(sorted(s for s, e in zip(self.names, exponents, strict=True) if e for _ in range(e)))
 
     def reduce(self, form: Form) -> tuple[Form, Steps]:
         """Return the remainder, and the multiples of the basis that were subtracted."""

@@ -26,7 +26,7 @@ from derive.real import (
     sign_product,
 )
 from derive.rules import Fact
-from derive.scalar.ideal import Form, Ideal, multiply
+from derive.scalar.ideal import Form, Ideal, exact, multiply
 
 __all__ = ["closure", "prove_identity", "prove_sign"]
 
@@ -144,35 +144,83 @@ class Remainders:
 
 def _contradiction(products: Sequence[SignProduct], remainders: Remainders) -> list[SignProduct] | None:
     """Return products with coefficients whose sum is zero in the ideal, one of them positive."""
-    forms = [remainders.of(p.facts, p.squares) for p in products]
-    kept = _possible(forms)
-    strict = [i for i in kept if remainders.positive(products[i])]
-    values = _combination({i: forms[i] for i in kept}, strict) if strict else None
+    columns = Columns([remainders.of(p.facts, p.squares) for p in products])
+    columns.simplify()
+    strict = {i for i, p in enumerate(products) if remainders.positive(p)}
+    values = _combination(columns, strict)
     if values is None:
         return None
     return [SignProduct(c, products[i].facts, products[i].squares) for i, c in values.items() if c]
 
 
-def _possible(forms: Sequence[Form]) -> list[int]:
-    """Return the columns that can have a positive coefficient: no monomial has one sign in all of them."""
-    rows: dict[int, tuple[set[int], set[int]]] = {}
-    for i, form in enumerate(forms):
-        for m, c in form.items():
-            rows.setdefault(m, (set(), set()))[c > 0].add(i)
-    kept, waiting = set(range(len(forms))), list(rows)
-    while waiting:
-        below, above = rows[waiting.pop()]
-        if bool(below) != bool(above):
-            for i in [*below, *above]:
-                kept.discard(i)
-                for m, c in forms[i].items():
-                    rows[m][c > 0].discard(i)
-                    waiting.append(m)
-    return sorted(kept)
+class Columns:
+    """Columns of a linear program sum of c * form = 0, c >= 0, and what each is made of.
+
+    A monomial that has one sign in all columns makes their coefficients zero; one that is in two columns only, with
+    unlike signs, ties them to each other.
+    """
+
+    def __init__(self, forms: Sequence[Form]):
+        self.forms = [dict(form) for form in forms]
+        self.weights: list[dict[int, int | Fraction]] = [{i: 1} for i in range(len(forms))]
+        self.rows: dict[int, set[int]] = {}
+        for i, form in enumerate(forms):
+            for m in form:
+                self.rows.setdefault(m, set()).add(i)
+        self.kept = set(range(len(forms)))
+
+    def simplify(self) -> None:
+        """Drop what must be zero, join what is tied, until nothing is left to do."""
+        waiting = list(self.rows)
+        while waiting:
+            m = waiting.pop()
+            row = self.rows[m]
+            signs = {self.forms[i][m] > 0 for i in row}
+            if len(signs) == 1:
+                for i in list(row):
+                    waiting += self._drop(i)
+            elif len(row) == 2:
+                waiting += self._join(*sorted(row), m)
+
+    def _drop(self, i: int) -> list[int]:
+        self.kept.discard(i)
+        for m in self.forms[i]:
+            self.rows[m].discard(i)
+        return list(self.forms[i])
+
+    def _join(self, i: int, j: int, monomial: int) -> list[int]:
+        ratio = exact(-self.forms[i][monomial], self.forms[j][monomial])
+        touched = self._drop(j)
+        for target, source in ((self.forms[i], self.forms[j]), (self.weights[i], self.weights[j])):
+            for m, c in source.items():
+                target[m] = target.get(m, 0) + ratio * c
+        for m in touched:
+            self.rows[m].add(i)
+            if not self.forms[i][m]:
+                del self.forms[i][m]
+                self.rows[m].discard(i)
+        return [*touched, *self.forms[i]]
 
 
-def _combination(forms: Mapping[int, Form], strict: Sequence[int]) -> dict[int, Fraction] | None:
+def _combination(columns: Columns, strict: set[int]) -> dict[int, Fraction] | None:
+    """Return coefficients >= 0 with sum zero, one of those of the strict columns positive."""
+    kept = [i for i in sorted(columns.kept) if columns.forms[i] or not strict.isdisjoint(columns.weights[i])]
+    ready = next((i for i in kept if not columns.forms[i]), None)
+    if ready is not None:
+        found = {ready: Fraction(1)}
+    else:
+        found = _program({i: columns.forms[i] for i in kept}, [i for i in kept if strict & columns.weights[i].keys()])
+    total: dict[int, Fraction] = {}
+    for i, c in (found or {}).items():
+        for k, weight in columns.weights[i].items():
+            total[k] = total.get(k, Fraction(0)) + c * weight
+    return total or None
+
+
+def _program(forms: Mapping[int, Form], strict: Sequence[int]) -> dict[int, Fraction] | None:
     """Return coefficients >= 0 with sum zero, those of the strict columns together at least 1."""
+    if not strict:
+        return None
     import z3
 
     context = z3.Context()  # of its own, so that the answer does not depend on what was asked before

@@ -136,10 +136,14 @@ class ScalarBuilder(Builder):
         if not limited or not _reads(statement, self.reading):
             return []
         reading, found = self.reading, list[str]()
-        for name in [n for n, d in self.theory.declared.items() if isinstance(d, Declared) and d.case]:
-            facts = {k: v for k, v in reading.context.facts.items() if k != name}
-            if not _reads(statement, replace(reading, context=replace(reading.context, facts=facts))):
-                found.append(name)
+        cases = {n for n, d in self.theory.declared.items() if isinstance(d, Declared) and d.case}
+
+        def needs(names: set[str]) -> bool:
+            facts = {k: v for k, v in reading.context.facts.items() if k not in names}
+            return not _reads(statement, replace(reading, context=replace(reading.context, facts=facts)))
+
+        if needs(cases):
+            found += [name for name in self.theory.declared if name in cases and needs({name})]
         for name, step in self.steps.items():
             if isinstance(step.statement.lhs, Limit) and step.rule == "squeeze":
                 known = value(step.statement.lhs.body, reading)

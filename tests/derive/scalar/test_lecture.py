@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from derive.context import Declared, DeclaredAtom
+from derive.context import Declared, DeclaredAtom, Theory
 from derive.derivation import check, learn
 from derive.document import lecture_to_json
 from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Start, value
@@ -194,6 +194,13 @@ def test_wrong_analysis_is_rejected(walked):
     rejects(walked, "logarithm", statement=Equation(steps["logarithm"][0].statement.lhs, "=", other))
     rejects(walked, "start", statement=Equation(Start(t["P0(t)"], t["t"]), "=", t["P1"]))
     rejects(walked, "decay", statement=Equation(steps["decay"][0].statement.lhs, "=", Number(Fraction(1)) - S * t["h"]))
+
+
+def test_nothing_waits_in_vain(walked):
+    """A theory that tries every declaration after every step takes up no more than the one that waits."""
+    item, steps = lecture("scalar"), list(walked[0].values())
+    for _, reading, _ in steps[:: len(steps) // 25]:
+        assert Theory.settle(item.theory, reading).adopted == reading.adopted
 
 
 def test_a_case_is_needed(walked):
