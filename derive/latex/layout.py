@@ -52,6 +52,7 @@ from derive.terms import (
 )
 
 TIMES, APPLY, THIN = "\u2062", "\u2061", "\u2009"  # invisible times, function application, thin space
+BESIDE = "\u2006"  # the space around the name of a function, which TeX sets by itself
 TOP, INTEGRAL = "⊤", "∫"
 SCRIPT = "𝒜ℬ𝒞𝒟ℰℱ𝒢ℋℐ𝒥𝒦ℒℳ𝒩𝒪𝒫𝒬ℛ𝒮𝒯𝒰𝒱𝒲𝒳𝒴𝒵"
 BREAKS = frozenset({"+", "−", "=", ":=", "⪰", "≻"})  # a line may be broken before these
@@ -186,7 +187,7 @@ def width(box: Box) -> float:
         case Letter(text) | Digits(text):
             return 0.6 * len(text)
         case Op(text, form):
-            return 0.0 if text in (TIMES, APPLY) else 0.2 if text == THIN else 1.3 if form == "infix" else 0.5
+            return 0.0 if text in (TIMES, APPLY) else 0.2 if text in (THIN, BESIDE) else 1.3 if form == "infix" else 0.5
         case Scripted(base, sub, sup):
             return width(base) + 0.7 * max((width(b) for b in (sub, sup) if b is not None), default=0.0)
         case Over(top, bottom, small):
@@ -384,7 +385,7 @@ def _product(term: Term) -> Box:
     for i, factor in enumerate(factors):
         if i:
             named = isinstance(factor, NAMED)
-            items.append(Op("⋅") if isinstance(factor, Number) else Op(THIN if named else TIMES, "tight"))
+            items.append(Op("⋅") if isinstance(factor, Number) else Op(BESIDE if named else TIMES, "tight"))
         items.append(at_least(factor, OPEN if i == len(factors) - 1 else PRODUCT))
     return row(items)
 
@@ -427,7 +428,7 @@ def _function(term: Term) -> Box:
         case Log(body) | Arctan(body):
             name = Letter("ln" if isinstance(term, Log) else "arctan", upright=True)
             closed = layout(body) if level(body) >= POWER else Fenced(layout(body))
-            return row((name, Op(THIN if level(body) == POWER else APPLY, "tight"), closed))
+            return row((name, Op(BESIDE if level(body) == POWER else APPLY, "tight"), closed))
         case Rate(body, symbol):
             d, closed = Letter("d", upright=True), at_least(body, POWER)
             return row((Over(d, row((d, layout(symbol)))), Op(APPLY, "tight"), closed))
@@ -437,7 +438,7 @@ def _function(term: Term) -> Box:
         case Limit(body, symbol, point):
             where = row((layout(symbol), Op("→", "tight"), layout(point)))
             closed = at_least(body, PRODUCT)
-            between = Op(APPLY if isinstance(closed, Fenced) else THIN, "tight")
+            between = Op(APPLY if isinstance(closed, Fenced) else BESIDE, "tight")
             return row((Scripted(Letter("lim", upright=True), where), between, closed))
         case Definite(body, symbol, lower, upper):
             sign = Scripted(Op(INTEGRAL, "prefix"), layout(lower), layout(upper))
@@ -452,10 +453,10 @@ def _spectral(term: Term) -> Box:
     match term:
         case Det(body):
             name, simple = Letter("det", upright=True), isinstance(body, (Symbol, At))
-            return row((name, Op(THIN, "tight"), layout(body)) if simple else (name, Fenced(layout(body), "[", "]")))
+            return row((name, Op(BESIDE, "tight"), layout(body)) if simple else (name, Fenced(layout(body), "[", "]")))
         case RealPart(root) | ImaginaryPart(root):
             name = Letter("Re" if isinstance(term, RealPart) else "Im", upright=True)
-            return row((name, Op(THIN, "tight"), layout(root)))
+            return row((name, Op(BESIDE, "tight"), layout(root)))
         case Conjugate(root):
             return _symbol(root, "bar")
         case Distance(point, root):

@@ -6,6 +6,7 @@ from html import escape
 
 from derive.latex.alphabet import ACCENTS, SIGNS
 from derive.latex.layout import (
+    BESIDE,
     THIN,
     TOP,
     Accented,
@@ -98,7 +99,7 @@ def _letter(text: str, upright: bool) -> str:
 
 
 def _operator(text: str, form: str) -> str:
-    if text == THIN:
+    if text in (THIN, BESIDE):
         return SPACE
     sign = escape(SINGLE.get(text, text))
     if text == TOP:

@@ -7,6 +7,7 @@ import unicodedata
 from derive.latex.alphabet import ACCENTS, SIGNS
 from derive.latex.layout import (
     APPLY,
+    BESIDE,
     THIN,
     TIMES,
     TOP,
@@ -25,7 +26,7 @@ from derive.latex.layout import (
 )
 from derive.terms import Equation, Term
 
-SPACES = {TIMES: " ", APPLY: "", THIN: " "}
+SPACES = {TIMES: " ", APPLY: "", THIN: " ", BESIDE: " "}
 
 
 def plain(term: Term | Equation) -> str:

@@ -7,6 +7,7 @@ import re
 from derive.latex.alphabet import ACCENTS, GREEK, SIGNS
 from derive.latex.layout import (
     APPLY,
+    BESIDE,
     SCRIPT,
     THIN,
     TIMES,
@@ -28,8 +29,9 @@ from derive.terms import Equation, Term
 
 COMMANDS = {char: "\\" + name for name, char in GREEK.items()}
 COMMANDS |= {"𝔼": r"\mathbb{E}", **{s: rf"\mathcal{{{chr(ord('A') + i)}}}" for i, s in enumerate(SCRIPT)}}
-SPACES = {TIMES: " ", APPLY: "", THIN: r"\,"}
-NAMES = frozenset(("tr", "max", "ln", "arctan", "lim"))
+SPACES = {TIMES: " ", APPLY: "", THIN: r"\,", BESIDE: " "}
+NAMES = frozenset(("tr", "Re", "Im"))
+BUILT_IN = frozenset(("max", "ln", "arctan", "lim", "det"))  # operators that LaTeX has a command for
 ENDS_IN_COMMAND = re.compile(r"\\[A-Za-z]+$")
 
 
@@ -70,6 +72,8 @@ def tex(box: Box) -> str:
 def _letter(text: str, upright: bool) -> str:
     if text in COMMANDS:
         return COMMANDS[text]
+    if text in BUILT_IN:
+        return "\\" + text
     if len(text) > 1:
         return rf"\operatorname{{{text}}}" if text in NAMES else rf"\mathrm{{{text}}}"
     return rf"\mathrm{{{text}}}" if upright else text

@@ -28,8 +28,8 @@ def theory():
 
 
 def test_it_prints_as_what_it_shows():
-    assert plain(LIMIT) == "lim_{t->∞}E[x]"
-    assert latex(LIMIT) == r"\operatorname{lim}_{t\to\infty}\mathbb{E}[x]"
+    assert plain(LIMIT) == "lim_{t->∞} E[x]"
+    assert latex(LIMIT) == r"\lim_{t\to\infty} \mathbb{E}[x]"
     assert mathml(SUM) == mathml(x + y)
 
 

@@ -87,10 +87,9 @@ def test_every_equation_is_printed_in_order_and_balanced(key):
         assert text.count(r"\left") == text.count(r"\right")
         ElementTree.fromstring(mathml(step.statement).replace("&ApplyFunction;", ""))
         for side in (step.statement.lhs, step.statement.rhs):
-            named = [n for n in walk(side) if isinstance(n, Symbol) and re.fullmatch("[A-Z]", n.glyph.letter)]
+            symbols = [n for n in walk(side) if isinstance(n, Symbol)]
+            named = [c for n in symbols for c in (n.glyph.letter, *(n.show_args or ())) if re.fullmatch("[A-Z]", c)]
             if not any(type(n).__name__ in BOUNDED for n in walk(side)):
-                bare = re.sub(r"\\[A-Za-z]+|\{bmatrix\}|_\{[^{}]*\}|_\w|\\mathrm\{d\}", " ", latex(side))
-                letters = [
-                    c for c in re.findall("[A-Z]", bare) if c not in "IE" or c in {n.glyph.letter for n in named}
-                ]
-                assert letters == [n.glyph.letter for n in named], text
+                bare = re.sub(r"\\operatorname\{\w+\}|\\[A-Za-z]+|\{bmatrix\}|_\{[^{}]*\}|_\w|\\mathrm\{d\}", " ", latex(side))
+                letters = [c for c in re.findall("[A-Z]", bare) if c not in "IE" or c in named]
+                assert letters == named, text
