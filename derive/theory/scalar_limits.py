@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from derive.context import Theory
 from derive.functions import Abs, Infinity, Limit, Quotient, Root
-from derive.terms import Equation, Term
+from derive.terms import Equation, Glyph, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 from derive.theory.scalar_discrete import RECIPROCAL
@@ -18,7 +18,7 @@ def declare(t: Theory) -> None:
     t.atom("reciprocal", y, "y > 0", "1/y")
     t.atom("root", g, "g >= 0", "root of g")
     t.atom("root", square(A) + g * square(y), "radicand with y", "root with y")
-    P_y = t.scalar("P(y^2)", meaning="covariance for the intensity y^2")
+    P_y = t.scalar("P(y^2)", Glyph("P", sub="y"), meaning="covariance for the intensity y^2")
     t.define("P(y^2)", P_y, Quotient(V * (A + Root(square(A) + g * square(y))), square(C)))
     t.assume("Q > 0", Q, ">", text="the process is noisy", case=True)
     t.atom("reciprocal", Q, "Q > 0", "1/Q")
