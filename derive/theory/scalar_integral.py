@@ -36,6 +36,22 @@ def declare(t: Theory) -> None:
     t.atom("log", spectrum(A, W, g, w), "spectrum > 0", "ln of the spectrum")
     for name, integrand in (("ℓ", ratio), ("ℓ0", bare), ("ln of the spectrum", Log(spectrum(A, W, g, w)))):
         t.atom("improper", integrand, name=f"integral of {name}")
+    _declare_unit(t)
+
+
+def _declare_unit(t: Theory) -> None:
+    """Declare the case of unit measurement noise and process noise of intensity ε^2."""
+    A, C, V, W, w = (t.symbols[k] for k in ("A", "C", "V", "W", "ω"))
+    epsilon = t.scalar("ε", Glyph("ε"), meaning="square root of the intensity of the process noise")
+    t.assume("V = 1", V, "=", ONE, text="unit intensity of the measurement noise", case=True)
+    t.assume("W = ε^2", W, "=", square(epsilon), text="intensity of the process noise", case=True)
+    t.atom("log", _unit_spectrum(A, C, epsilon, w), "unit spectrum > 0", "ln of the unit spectrum")
+    t.atom("improper", Log(_unit_spectrum(A, C, epsilon, w)), name="integral of ln of the unit spectrum")
+
+
+def _unit_spectrum(A: Term, C: Term, epsilon: Term, w: Term) -> Term:
+    """Return ε^2 C^2 |1/(jω - A)|^2 + 1."""
+    return square(epsilon) * square(C) * Quotient(ONE, square(w) + square(A)) + ONE
 
 
 def spectrum(A: Term, W: Term, g: Term, w: Term) -> Term:
@@ -47,6 +63,7 @@ def derive(b: ScalarBuilder) -> None:
     """Derive corollary 2."""
     _derive_signs(b)
     _derive_general(b)
+    _derive_unit(b, "")
     _derive_integrator(b)
     _derive_silence(b)
 
@@ -169,6 +186,26 @@ def _derive_corollary(b: ScalarBuilder, tail: str, ratio: Term, factor: Term, li
         "corollary 2" + tail, Equation(P, "=", Quotient(V, square(C)) * (whole + 2 * Max(A))),
         "|A| is 2 max(0, A) - A, and P the stabilising root", ["|A| by the maximum", "integral" + tail],
         number="31", source=SOURCE,
+    )  # fmt: skip
+
+
+def _derive_unit(b: ScalarBuilder, tail: str) -> None:
+    s = b.theory.symbols
+    A, C, W, g, P, epsilon, w = (s[k] for k in ("A", "C", "W", "g", "P", "ε", "ω"))
+    unit, body = _unit_spectrum(A, C, epsilon, w), spectrum(A, W, g, w)
+    b.say("With unit measurement noise, and ", W, " = ", square(epsilon), ", this is a formula for the output's error:")
+    b.given("V = 1", "W = ε^2")
+    b.state("unit spectrum", Equation(unit, "=", body), "the intensities", ["V = 1", "W = ε^2"])
+    b.sign("unit spectrum > 0", Equation(unit, ">", ZERO), "one plus squares", ["1/(ω^2+|A|^2) > 0"],
+           squares=[epsilon * C])  # fmt: skip
+    b.linked("unit logarithm", Equation(Log(unit), "=", Log(body)), "same argument", "the same", ["unit spectrum"])
+    halves = [Definite(Log(f), w, ZERO, Infinity()) for f in (unit, body)]
+    b.linked("half the unit integral", Equation(halves[0], "=", halves[1]), "same argument", "the same integrand",
+             ["unit logarithm"])  # fmt: skip
+    whole = Quotient(ONE, 2 * PI) * Definite(Log(unit), w, Neg(Infinity()), Infinity())
+    b.state(
+        "unit corollary 2" + tail, Equation(square(C) * P, "=", whole + 2 * Max(A)), "corollary 2 with V = 1",
+        ["corollary 2" + tail, "half the unit integral", "V = 1"], number="35", source=SOURCE,
     )  # fmt: skip
 
 
