@@ -6,11 +6,12 @@ noise on the velocity. The forms of the oscillator are given once as they are wr
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 from derive.context import Theory
 from derive.functions import Abs, Power, Quotient, Root
-from derive.terms import Equation, Glyph, Number, Term
+from derive.terms import Equation, Glyph, Number, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 from derive.theory.scalar_second import equal
@@ -77,10 +78,10 @@ def _derive_integrator(b: ScalarBuilder) -> None:
     b.sign(
         "P22 >= 0", Equation(P22, "≥", ZERO), "a product of such", ["P11 >= 0", "P12 >= 0", "1/V > 0"], identities=cases
     )
-    _derive_root(b, "P12", P12, V * w2, "22", cases)
-    _derive_root(b, "P11", P11, V * both, "11", ["double integrator, P12"])
-    known = ["double integrator, P12", "P11^2 of the double integrator", "root of V W2"]
-    _derive_root(b, "P22", P22, w2 * both, "12", [*cases, *known])
+    _derive_root(b, P12, V * w2, "22", cases)
+    _derive_root(b, P11, V * both, "11", ["double integrator, P12"])
+    known = ["double integrator, P12", "double integrator, P11", ROOTS["P12"], ROOTS["P11"]]
+    _derive_root(b, P22, w2 * both, "12", [*cases, *known])
     b.state("double integrator, det P", Equation(P11 * P22 - square(P12), "=", P12 * (w1 + P12)), "eliminate", [
         *cases, "Riccati equation 11 of order two", "Riccati equation 12 of order two"
     ])  # fmt: skip
@@ -89,19 +90,12 @@ def _derive_integrator(b: ScalarBuilder) -> None:
 ROOTS = {"P12": "root of V W2", "P11": "root of V(W1 + 2√VW2)", "P22": "root of W2(W1 + 2√VW2)"}
 
 
-def _derive_root(b: ScalarBuilder, name: str, P: Term, radicand: Term, entry: str, known: list[str]) -> None:
+def _derive_root(b: ScalarBuilder, P: Symbol, radicand: Term, entry: str, known: Sequence[str]) -> None:
     """An entry of the covariance of the double integrator is a root, since it is not negative."""
-    lemma, root = f"{name}^2 of the double integrator", ROOTS[name]
-    b.state(
-        lemma, Equation(square(P), "=", radicand), f"entry {entry}", [*known, f"Riccati equation {entry} of order two"]
-    )
-    equal(
-        b,
-        f"double integrator, {name}",
-        Equation(P, "=", Root(radicand)),
-        [f"{name} >= 0", f"{root} ≥ 0"],
-        [lemma, root],
-    )
+    root = ROOTS[P.name]
+    identities = [*known, f"Riccati equation {entry} of order two", root, "1/V"]
+    facts = [f"{P.name} >= 0", f"{root} ≥ 0"]
+    equal(b, f"double integrator, {P.name}", Equation(P, "=", Root(radicand)), facts, identities)
 
 
 def _derive_oscillator(b: ScalarBuilder) -> None:

@@ -61,7 +61,7 @@ def _declare_root_of(t: Theory, name: str, a0: Term, a1: Term) -> None:
 
 def _declare_factor(t: Theory) -> None:
     c0, c2 = t.scalar("c0", Glyph("c", sub="0")), t.scalar("c2", Glyph("c", sub="2"))
-    t.assume("c0 > 0", c0, ">", text="the spectrum is positive at zero", case=True)
+    t.assume("c0 > 0", c0, ">", text="the spectrum is positive at zero")
     r = Root(c0)
     t.atom("root", c0, "c0 > 0", "root of c0")
     text = "the spectrum is positive at the frequency whose square is the root of c0"

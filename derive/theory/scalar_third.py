@@ -22,7 +22,7 @@ HALF = Number(Fraction(1, 2))
 
 def three(name: str) -> str:
     """Return the internal name of a letter or step of order three."""
-    return f"{name} (3)"
+    return f"cubic {name}"
 
 
 def letters(t: Theory, *names: str) -> tuple[Symbol, ...]:
@@ -47,23 +47,20 @@ def quartic(y: Term, a0: Term, c2: Term, c4: Term) -> Term:
 
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(t: Theory) -> None:
-    """Declare spectrum, factor, plant, covariance, and the triple integrator."""
+    """Declare spectrum, factor, plant and covariance."""
     _declare_factor(t)
     _declare_plant(t)
     _declare_solution(t)
-    _declare_integrator(t)
 
 
 def _declare_factor(t: Theory) -> None:
     c0, c2, c4 = (declared(t, f"c{i}", "coefficient of the spectrum") for i in (0, 2, 4))
     a0, a1, a2 = (declared(t, f"a{i}", "coefficient of the factor") for i in (0, 1, 2))
-    t.assume(three("c0 > 0"), c0, ">", text="the spectrum is positive at zero", case=True)
+    t.assume(three("c0 > 0"), c0, ">", text="the spectrum is positive at zero")
     t.atom("root", c0, three("c0 > 0"), three("root of c0"))
     t.define(three("a0"), a0, Root(c0))
-    t.assume(three("a2^2 - 2 a1 = c4"), square(a2) - 2 * a1, "=", c4, "the factor, coefficient of ω^4", case=True)
-    t.assume(
-        three("a1^2 - 2 a0 a2 = c2"), square(a1) - 2 * a0 * a2, "=", c2, "the factor, coefficient of ω^2", case=True
-    )
+    t.assume(three("a2^2 - 2 a1 = c4"), square(a2) - 2 * a1, "=", c4, "the factor at ω^4", case=True)
+    t.assume(three("a1^2 - 2 a0 a2 = c2"), square(a1) - 2 * a0 * a2, "=", c2, "the factor at ω^2", case=True)
     t.assume(three("a2 > 0"), a2, ">", text="the factor is Hurwitz", case=True)
     t.assume(three("a2 a1 > a0"), a2 * a1, ">", a0, "the factor is Hurwitz", case=True)
     al, be = t.symbols["α"], t.symbols["β"]
@@ -147,26 +144,14 @@ def _declare_solution(t: Theory) -> None:
     t.assume(three("x2 x1 > x0"), x2 * x1, ">", x0, "the closed loop of X is stable", case=True)
 
 
-def _declare_integrator(t: Theory) -> None:
-    V, w1, w2, w3 = (t.symbols[k] for k in ("V", "w1", "w2", "w3"))
-    for b in letters(t, "b0", "b1", "b2"):
-        t.assume(f"{b.name} = 0", b, "=", text="a chain of integrators", case=True)
-    for w in (w1, w2):
-        t.assume(three(f"{w.name} = 0"), w, "=", text="noise drives the last integrator alone", case=True)
-    r = t.scalar(three("r"), Glyph("r"), meaning="sixth root of W3/V")
-    t.assume(three("r > 0"), r, ">", text="a rate", case=True)
-    t.assume(three("W3 = V r^6"), w3, "=", V * Power(r, 6), "the sixth power of the rate is W3/V", case=True)
-
-
 # ------------------------------------------------------------------------------------------------ derivation
 def derive(b: ScalarBuilder) -> None:
-    """Derive factor, covariance, value and the triple integrator."""
+    """Derive factor, covariance and value."""
     _derive_factor(b)
     _derive_quartic(b)
     _derive_hurwitz(b)
     _derive_covariance(b)
     _derive_value(b)
-    _derive_integrator(b)
 
 
 FACTOR = (three("a2^2 - 2 a1 = c4"), three("a1^2 - 2 a0 a2 = c2"))
@@ -279,11 +264,25 @@ def _derive_value(b: ScalarBuilder) -> None:
     _derive_same_factor(b, factor)
     X11, P11 = letters(t, "X11", "P11")
     b.state(three("value"), Equation(Quotient(X11, V), "=", a2 - b2), "CXC'/V", [three("a2 of X"), three("x2")])
-    same = [*names, *map(three, ("a0 of X", "a1 of X", "a2 of X", "x0", "x1", "x2")), *DEFINITIONS]
+    _derive_same(b)
+    b.state(three("value of P11"), Equation(Quotient(P11, V), "=", a2 - b2), "the covariance itself")
+
+
+def _derive_same(b: ScalarBuilder) -> None:
+    """The gain of X is K, and three of the Riccati equations give the other entries."""
+    t = b.theory
+    first = {
+        "11": ("a2 of X", "x2"),
+        "12": ("a1 of X", "x1", "only P11"),
+        "13": ("a0 of X", "x0", "only P11", "only P12"),
+    }
+    other = {"22": ("Riccati equation 12 of X",), "23": ("Riccati equation 13 of X",)}
+    other["33"] = "Riccati equation 23 of X", "only P22", "only P23"
+    gains = ("K1", "K2", "K3", "P11", "P12", "P13")
     for k in ENTRIES:
         X, P = letters(t, "X" + k, "P" + k)
-        b.state(three(f"only P{k}"), Equation(X, "=", P), "insert the factor", same)
-    b.state(three("value of P11"), Equation(Quotient(P11, V), "=", a2 - b2), "the covariance itself")
+        known = (*first[k], *gains) if k in first else (*other[k], "only P11", "only P12", "only P13", f"P{k}", *gains)
+        b.state(three(f"only P{k}"), Equation(X, "=", P), "insert the factor", list(map(three, known)))
 
 
 def _derive_same_factor(b: ScalarBuilder, factor: list[str]) -> None:
@@ -297,33 +296,3 @@ def _derive_same_factor(b: ScalarBuilder, factor: list[str]) -> None:
     relations = [*factor[:2], *FACTOR, three("a0 of X")]
     equal(b, three("a2 of X"), Equation(x2, "=", a2), both, relations, [a2 - x2])
     b.state(three("a1 of X"), Equation(x1, "=", a1), "the coefficient of ω^4", [three("a2 of X"), factor[0], FACTOR[0]])
-
-
-def _derive_integrator(b: ScalarBuilder) -> None:
-    t = b.theory
-    V, r = t.symbols["V"], letters(t, "r")[0]
-    a0, a1, a2, c0 = letters(t, "a0", "a1", "a2", "c0")
-    cases = [three(f"b{i}") + " = 0" for i in (0, 1, 2)] + [three("w1 = 0"), three("w2 = 0")]
-    b.heading("The triple integrator")
-    b.given(*cases, three("r > 0"), three("W3 = V r^6"))
-    plant = [three(f"plant c{i}") for i in (0, 2, 4)]
-    known = [*plant, *cases]
-    b.state(three("c0 = r^6"), Equation(c0, "=", Power(r, 6)), "the rate", [plant[0], *cases, three("W3 = V r^6")])
-    b.sign(three("r^2 > 0"), Equation(square(r), ">", ZERO), "a square", [three("r > 0")])
-    b.sign(three("r^3 > 0"), Equation(Power(r, 3), ">", ZERO), "a product", [three("r > 0"), three("r^2 > 0")])
-    a0_is, root = three("a0 = r^3"), [three("root of c0"), three("a0"), three("c0 = r^6")]
-    equal(b, a0_is, Equation(a0, "=", Power(r, 3)), [three("a0 > 0"), three("r^3 > 0")], root)
-    b.state(
-        three("quartic of the integrator"), Equation(Power(a2, 4), "=", 8 * Power(r, 3) * a2), "c2 and c4 vanish",
-        [three("quartic"), a0_is, *known],
-    )  # fmt: skip
-    positive = [three("a2 > 0"), three("r > 0")]
-    equal(b, three("a2 = 2 r"), Equation(a2, "=", 2 * r), positive, [three("quartic of the integrator")], [a2, r], 4)
-    b.state(three("a1 = 2 r^2"), Equation(a1, "=", 2 * square(r)), "the coefficient of ω^4",
-            [three("a2 = 2 r"), FACTOR[0], *known])  # fmt: skip
-    known = [*cases, *DEFINITIONS, a0_is, three("a1 = 2 r^2"), three("a2 = 2 r")]
-    values = ((2, 1), (2, 2), (1, 3), (3, 3), (2, 4), (2, 5))
-    for k, (factor, exponent) in zip(ENTRIES, values, strict=True):
-        P = letters(t, "P" + k)[0]
-        value = (factor * V if factor > 1 else V) * (Power(r, exponent) if exponent > 1 else r)
-        b.state(three(f"triple integrator, P{k}"), Equation(P, "=", value), f"entry {k}", known)

@@ -167,9 +167,9 @@ def test_any_plant_of_order_three(walked):
         P = riccati(A, np.diag([w1, w2, w3]), V)
         K = P[:, [0]] / V
         _, a2, a1, a0 = np.poly(A - K @ np.eye(1, 3))
-        known = {"b0 (3)": b0, "b1 (3)": b1, "b2 (3)": b2, "a1 (3)": a1, "a2 (3)": a2, "c0 (3)": a0**2}
+        known = {"cubic b0": b0, "cubic b1": b1, "cubic b2": b2, "cubic a1": a1, "cubic a2": a2, "cubic c0": a0**2}
         p = at_point(walked[1], known | {"w1": w1, "w2": w2, "w3": w3, "V": V})
-        found = [p(f"P{i}{j} (3)") for i in (1, 2, 3) for j in range(i, 4)]
+        found = [p(f"cubic P{i}{j}") for i in (1, 2, 3) for j in range(i, 4)]
         np.testing.assert_allclose(found, P[np.triu_indices(3)], rtol=1e-7, atol=1e-9 * P.max())
         c0, c2, c4 = (p_of(walked, name, p) for name in ("c0", "c2", "c4"))
         assert c0 == pytest.approx(a0**2)
@@ -179,7 +179,7 @@ def test_any_plant_of_order_three(walked):
 
 def p_of(walked, name: str, p) -> float:
     """Return a coefficient of the spectrum of the plant by the right-hand side of its declaration."""
-    statement, reading = lecture("scalar").theory.statement(f"plant {name} (3)"), walked[1]
+    statement, reading = lecture("scalar").theory.statement(f"cubic plant {name}"), walked[1]
     poly = value(statement.rhs, reading)
     return sum(float(c) * np.prod([p(s) for s in m]) for (m, _), c in poly.terms.items())
 
@@ -199,7 +199,7 @@ def test_true_statements_are_proved_by_that_builder(builder):
     """So that what follows is rejected for what it says."""
     s = builder.theory.symbols
     builder.state("again", Equation(s["P11"], "=", s["V"] * (s["f1"] - s["b1"])), "")
-    builder.state("again (3)", Equation(s["P11 (3)"], "=", s["V"] * (s["a2 (3)"] - s["b2 (3)"])), "")
+    builder.state("cubic again", Equation(s["cubic P11"], "=", s["V"] * (s["cubic a2"] - s["cubic b2"])), "")
 
 
 MUTANTS = {
@@ -223,9 +223,9 @@ MUTANTS = {
         s["V"] * (s["f0"] - s["b0"]) * (s["P11"] * s["P22"] - Power(s["P12"], 2)),
         s["w1"] * Power(s["P12"], 2) + s["w2"] * Power(s["P11"], 2),
     ),
-    "the value with a sign": lambda s: (Quotient(s["P11 (3)"], s["V"]), s["a2 (3)"] + s["b2 (3)"]),
-    "the value with another coefficient": lambda s: (Quotient(s["P11 (3)"], s["V"]), s["a1 (3)"] - s["b1 (3)"]),
-    "K2 without b2 K1": lambda s: (s["P12 (3)"], s["V"] * (s["a1 (3)"] - s["b1 (3)"])),
+    "the value with a sign": lambda s: (Quotient(s["cubic P11"], s["V"]), s["cubic a2"] + s["cubic b2"]),
+    "the value with another coefficient": lambda s: (Quotient(s["cubic P11"], s["V"]), s["cubic a1"] - s["cubic b1"]),
+    "K2 without b2 K1": lambda s: (s["cubic P12"], s["V"] * (s["cubic a1"] - s["cubic b1"])),
 }  # fmt: skip
 
 
@@ -238,12 +238,8 @@ def test_mutated_formulas_are_not_derived(builder, name):
 
 CASED = {
     "the quartic with 4 for 8": lambda s: (
-        Power(Power(s["a2 (3)"], 2) - s["c4 (3)"], 2) - 4 * s["a0 (3)"] * s["a2 (3)"] - 4 * s["c2 (3)"],
-        ["a2^2 - 2 a1 = c4 (3)", "a1^2 - 2 a0 a2 = c2 (3)"],
-    ),
-    "P22 of three integrators with 2 for 3": lambda s: (
-        s["P22 (3)"] - 2 * s["V"] * Power(s["r (3)"], 3),
-        ["triple integrator, P22 (3)"],
+        Power(Power(s["cubic a2"], 2) - s["cubic c4"], 2) - 4 * s["cubic a0"] * s["cubic a2"] - 4 * s["cubic c2"],
+        ["cubic a2^2 - 2 a1 = c4", "cubic a1^2 - 2 a0 a2 = c2"],
     ),
     "P11 of two integrators without a root": lambda s: (
         s["P11"] - s["V"] * (s["w1"] + 2 * Root(s["V"] * s["w2"])), ["double integrator, P11"],
@@ -282,10 +278,10 @@ def test_wrong_signs_are_not_derived(builder):
         ("det P > 0", "w2 > 0"),
         ("factor is Hurwitz", "a1 > 0"),
         ("c2 + 2√c0 > 0", "spectrum at √c0"),
-        ("largest root (3)", "a2 a1 > a0 (3)"),
-        ("factor is Hurwitz (3)", "a2 a1 > a0 (3)"),
+        ("cubic largest root", "cubic a2 a1 > a0"),
+        ("cubic factor is Hurwitz", "cubic a2 a1 > a0"),
         ("a0 of X, one way", "X leaves a0 >= 0"),
-        ("a2 of X (3), one way", "x2 x1 > x0 (3)"),
+        ("cubic a2 of X, one way", "cubic x2 x1 > x0"),
     ],
 )
 def test_a_case_is_needed(walked, step, fact):
@@ -310,4 +306,4 @@ def test_what_the_values_rest_on():
     assert not {"w2 > 0", "b0 = 0"} & item.rests_on("only P22")  # the strong solution, for any plant
     assert "w2 > 0" in item.rests_on("det P > 0")
     assert "w1 = 0" not in item.rests_on("double integrator, P22")
-    assert {"a2 > 0 (3)", "a2 a1 > a0 (3)", "x2 x1 > x0 (3)"} <= item.rests_on("value (3)")
+    assert {"cubic a2 > 0", "cubic a2 a1 > a0", "cubic x2 x1 > x0"} <= item.rests_on("cubic value")
