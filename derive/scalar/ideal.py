@@ -26,7 +26,7 @@ BITS = 16  # for an exponent, an unsigned short of struct; the highest of them s
 
 def whole(c: Number) -> Number:
     """Return a rational number as an integer if it is one; integers are faster."""
-    return c.numerator if isinstance(c, Fraction) and c.denominator == 1 else c
+    return c if type(c) is int or c.denominator != 1 else c.numerator
 
 
 def exact(c: Number, d: Number) -> Number:
@@ -95,7 +95,7 @@ class Ideal:
         heapify(heap)
         while heap:
             m = -heappop(heap)
-            c = rest.pop(m)
+            c = whole(rest.pop(m))
             k = self._find(m) if c else None
             if c and k is None:
                 done[m] = c
