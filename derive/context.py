@@ -13,7 +13,8 @@ from typing import Any, Literal
 
 from derive.functions import Power, is_scalar, value
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
-from derive.real import Family, Real, scalar, scalars_of
+from derive.real import COMPLEX, FREQUENCY, RESERVED, TIME, UNIT, Family, Real, scalar, scalars_of
+from derive.roots import is_real
 from derive.rules import Context, Fact, Grid
 from derive.scalars import adopt_atom, adopt_scalar
 from derive.terms import (
@@ -34,6 +35,7 @@ from derive.terms import (
 )
 
 FACT_OF = {"⪰": "psd", "≻": "pd"}
+KINDS = ("hurwitz", "schur", "invertible", "initial", "single")  # hypotheses on a matrix that are no (in)equality
 
 
 @dataclass(frozen=True)
@@ -187,7 +189,9 @@ class Theory:
         self.arbitrary.add(name)
         return self.scalar(name, glyph, meaning=meaning)
 
-    def roots(self, name: str, index: Symbol, count: Symbol, glyph: Glyph | None = None, *, of: str = "", meaning: str = "") -> Symbol:  # fmt: skip
+    def roots(
+        self, name: str, index: Symbol, count: Symbol, glyph: Glyph | None = None, *, of: str = "", meaning: str = ""
+    ) -> Symbol:
         """Declare the roots of a monic polynomial with real coefficients, numbered by an index from 1 to a count."""
         root = replace(self.scalar(name, glyph, meaning=meaning), show_args=(of,) if of else None)
         self.symbols[name] = root
@@ -271,7 +275,10 @@ class Theory:
             facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
         )
         generic = any(isinstance(d, Declared) and d.generic for d in self.declared.values())
-        real = Real(families=dict(self.families), arbitrary=frozenset(self.arbitrary), generic=generic)
+        self._check_scalars()
+        real = Real(
+            families=dict(self.families), arbitrary=frozenset(self.arbitrary), pending=self._pending(), generic=generic
+        )
         reading = Reading(context, real=real)
         for name, images in self.maps.items():
             lowered = {self.symbols[letter].letter: lower(image, reading)[0][0] for letter, image in images.items()}
@@ -281,6 +288,29 @@ class Theory:
                     raise Rejected(f"the map {name} sends the symmetric {letter} to a matrix that is not")
             reading = replace(reading, maps={**reading.maps, name: lowered})
         return self.settle(reading)
+
+    def _pending(self) -> frozenset[str]:
+        """Return the scalars that stand for others: those defined, and atoms."""
+        named = {d.name for d in self.declared.values() if isinstance(d, DeclaredAtom)}
+        for item in self.declared.values():
+            if (
+                isinstance(item, Declared)
+                and item.statement.relation == ":="
+                and isinstance(item.statement.lhs, Symbol)
+            ):
+                named |= {item.statement.lhs.name} if item.statement.lhs.scalar else set()
+        return frozenset(named)
+
+    def _check_scalars(self) -> None:
+        """Reject names of scalars that the rules for numbers would take for something else."""
+        counts = {f.index: f.count for f in self.families.values()}
+        taken = {n for f in self.families.values() for n in (f.real, f.imaginary, f.index, f.count)} | set(
+            self.families
+        )
+        if self.arbitrary & (taken | RESERVED | self.nonnegative) or {COMPLEX, UNIT} & self.nonnegative:
+            raise Rejected("an arbitrary parameter, s or j is declared as something else as well")
+        if taken & RESERVED or any(counts[f.index] != f.count for f in self.families.values()):
+            raise Rejected("roots are numbered by an index of their own, from 1 to one count")
 
     def settle(self, reading: Reading) -> Reading:
         """Adopt every declaration whose inverses are available by now, in the order of declaration."""
@@ -317,10 +347,12 @@ def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) ->
 
 def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> Reading:
     """Extend a reading by one declaration of the theory."""
+    _check_hypothesis(item, reading)
     if isinstance(item, Declared):
-        _check_hypothesis(item, reading)
         reading = adopt(reading, item.name, item.statement)
     elif isinstance(item, DeclaredFact):
+        if item.kind not in KINDS:
+            raise Rejected(f"{item.name}: {item.kind} is no kind of matrix")
         reading = _with_fact(reading, item.name, Fact(item.kind, lower(item.matrix, reading)))
     elif isinstance(item, DeclaredAtom):
         reading = adopt_atom(reading, item.name, item.kind, item.of, item.because)
@@ -329,15 +361,32 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
     return replace(reading, adopted=reading.adopted | {item.name})
 
 
-def _check_hypothesis(item: Declared, reading: Reading) -> None:
-    """Reject a hypothesis on an arbitrary parameter, unless it holds for all but one value of a variable."""
-    names = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
-    match item.statement:
-        case Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero()) if item.generic:
-            shift = value(x, reading) - scalar(item.generic)
-            if any(reading.real.varies(s, item.generic) for p in (shift, value(a, reading)) for s in scalars_of(p)):
-                raise Rejected(f"{item.name}: x must be the variable and a shift, a must not depend on it")
-        case _ if item.generic or (item.kind == "hypothesis" and names & reading.real.arbitrary):
+def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> None:
+    """Reject a hypothesis on an arbitrary parameter, unless it holds for all but one value of a variable.
+
+    A scalar may be defined by one, and an atom made of it: its reason is a fact that is proved.
+    """
+    if isinstance(item, DeclaredAtom):
+        return
+    real, names = reading.real, {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
+    match item:
+        case Declared(statement=Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero())) if item.generic:
+            shift, width = value(x, reading) - scalar(item.generic), value(a, reading)
+            used, variables = scalars_of(shift) | scalars_of(width), (COMPLEX, FREQUENCY, TIME)
+            moving = any(real.varies(s, v) for s in used for v in variables)
+            if (
+                item.generic not in (COMPLEX, FREQUENCY)
+                or moving
+                or not (is_real(shift, reading) and is_real(width, reading))
+            ):
+                raise Rejected(
+                    f"{item.name}: x must be the variable and a real shift, a must be real and not depend on it"
+                )
+        case Declared(statement=Equation(Symbol(scalar=True) as lhs, ":=", _)) if not item.generic:
+            parts = {p for f in real.families.values() for p in (f.real, f.imaginary, f.index, f.count)}
+            if lhs.name in RESERVED | real.arbitrary | parts or lhs.name in real.families:
+                raise Rejected(f"{item.name}: {lhs.name} has a meaning already")
+        case _ if getattr(item, "generic", "") or real.reached(names) & real.arbitrary:
             raise Rejected(f"{item.name}: nothing may be assumed of an arbitrary parameter")
         case _:
             pass
@@ -355,6 +404,8 @@ def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
     if statement.relation in FACT_OF:
         matrix = lower(lhs, reading) if _is_zero(rhs) else _difference(statement, reading)
         return _with_fact(reading, name, Fact(FACT_OF[statement.relation], matrix))
+    if statement.relation not in ("=", ":="):
+        raise Rejected(f"{statement.relation} is no relation between matrices")
     match lhs:
         case Dot(Symbol() as x) if x.letter not in context.derivatives:
             ((rate,),) = lower(rhs, reading)

@@ -13,6 +13,7 @@ from typing import Literal
 
 from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt
 from derive.display import Displayed
+from derive.functions import single_of
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
 from derive.real import NEGATION, Sign
@@ -127,6 +128,8 @@ def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificat
     if rule == "trace":
         return [Certificate(lower_trace(Sum((lhs, Neg(rhs))), reading), trace=True)]
     if rule == "apply":
+        for side in (s for s in (lhs, rhs) if isinstance(s, Entry)):
+            single_of(side.body, reading)
         lhs, rhs = _bodies(lhs, rhs)
     left, right = lower(lhs, reading), _like(rhs, lhs, reading)
     if len(left) != len(right) or len(left[0]) != len(right[0]):

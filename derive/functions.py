@@ -11,14 +11,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
-from derive.kernel import ANY, Poly, Rejected, identity, times
+from derive.kernel import ANY, Poly, Rejected, identity, parts, times
 from derive.real import (
+    AXIS,
     CIRCLE,
+    COMPLEX,
     FREQUENCY,
     INFINITY,
     ONE,
     ORIGIN,
     SIGNS,
+    TIME,
+    UNIT,
     ZERO,
     Atom,
     Family,
@@ -27,6 +31,7 @@ from derive.real import (
     constant,
     derivative,
     limit,
+    multiply,
     power,
     reciprocal,
     reflect,
@@ -46,7 +51,21 @@ from derive.spectral import (
     TimesLog,
     Total,
 )
-from derive.terms import Equation, MissingInverse, Neg, Number, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower
+from derive.terms import (
+    Equation,
+    MissingInverse,
+    Neg,
+    Number,
+    Product,
+    Reading,
+    Sum,
+    Symbol,
+    Term,
+    Trace,
+    Zero,
+    lower,
+    walk,
+)
 
 PI = Symbol(CIRCLE, scalar=True)
 
@@ -177,7 +196,7 @@ def value(term: Term, reading: Reading) -> Poly:
     real = reading.real
     match term:
         case Symbol(scalar=True):
-            return scalar(term.name)
+            return _symbol(term, reading)
         case Number(number):
             return constant(number)
         case Zero("", ""):
@@ -192,12 +211,12 @@ def value(term: Term, reading: Reading) -> Poly:
         case Product(factors):
             total = ONE
             for factor in factors:
-                total = total * value(factor, reading)
+                total = multiply(total, value(factor, reading))
             return total
         case Power(body, exponent) if exponent >= 0:
             return power(value(body, reading), exponent)
         case Quotient(top, bottom):
-            return value(top, reading) * _over(bottom, reading)
+            return multiply(value(top, reading), _over(bottom, reading))
         case Log(Modulus() | At()):
             return _spectral(term, reading)
         case Log(Quotient(top, bottom)):
@@ -205,15 +224,37 @@ def value(term: Term, reading: Reading) -> Poly:
         case Root(body) | Abs(body) | Max(body) | Exp(body) | Log(body) | Arctan(body):
             return scalar(_atom(term, value(body, reading), real))
         case Rate(body, symbol):
-            return derivative(value(body, reading), symbol.name, real)
+            return derivative(value(body, reading), variable(symbol, reading), real)
         case Start(body, symbol):
-            return at_origin(value(body, reading), symbol.name, real)
+            return at_origin(value(body, reading), variable(symbol, reading), real)
         case Limit(body, symbol, point):
-            return limit(value(body, reading), symbol.name, point_of(point), real, reading.context)
+            return limit(value(body, reading), variable(symbol, reading), point_of(point), real, reading.context)
         case Definite():
             return _integral(term, reading)
         case _:
             return _spectral(term, reading)
+
+
+def _symbol(symbol: Symbol, reading: Reading) -> Poly:
+    """Read a scalar that the theory declares; one that stands for another is read once that is known."""
+    real, name = reading.real, symbol.name
+    if symbol.args or name not in reading.context.alphabet.scalars:
+        raise Rejected(f"{symbol.letter} is no scalar of the theory")
+    if name in real.families or name in {f.index for f in real.families.values()}:
+        raise Rejected(f"{name} is no number: a root is read by its parts, and an index numbers roots")
+    if name in real.pending and name not in real.atoms:
+        raise MissingInverse(f"{name} is not defined yet")
+    return scalar(name)
+
+
+def variable(symbol: Symbol, reading: Reading) -> str:
+    """Return the name of a variable of a derivative, limit or integral: a scalar that stands for nothing else."""
+    real, name = reading.real, symbol.name
+    _symbol(symbol, reading)
+    parts = {p for f in real.families.values() for p in (f.real, f.imaginary, f.count)}
+    if not symbol.scalar or name in real.atoms or name in (CIRCLE, UNIT) or name in parts:
+        raise Rejected(f"{name} is no variable")
+    return name
 
 
 KINDS = {Root: "root", Abs: "absolute", Max: "part", Exp: "exp", Log: "log", Arctan: "arctan"}
@@ -227,9 +268,6 @@ def _atom(term: Term, of: Poly, real: Real) -> str:
 
 
 # ------------------------------------------------------------------------------------------------ frequency domain
-COMPLEX, AXIS = "s", ("j", FREQUENCY)  # a generic complex number, and the factors of a point on the imaginary axis
-
-
 def _spectral(term: Term, reading: Reading) -> Poly:
     """Read a term of the frequency domain: a family of roots, a determinant or trace, a logarithm on the axis."""
     match term:
@@ -261,7 +299,7 @@ def spectral_atom(name: str, term: Term, reading: Reading) -> Atom:
     """Return the atom that a determinant, trace, product over roots, sum or logarithm stands for."""
     match term:
         case Det(body) | Trace(body):
-            poly, kind = _square(body, reading), "det" if isinstance(term, Det) else "trace"
+            poly, kind = square_of(body, reading), "det" if isinstance(term, Det) else "trace"
             return Atom(name, kind, poly, over="" if reading.context.is_real(poly) else COMPLEX)
         case Roots(point, root, index, count):
             family = _family(root, reading)
@@ -325,11 +363,23 @@ def _family(root: Symbol, reading: Reading) -> Family:
     return family
 
 
-def _square(body: Term, reading: Reading) -> Poly:
+def square_of(body: Term, reading: Reading) -> Poly:
+    """Read one square matrix, constant in time, of which a determinant or trace is taken."""
     grid = lower(body, reading)
     if len(grid) != 1 or len(grid[0]) != 1 or grid[0][0].rows != grid[0][0].cols:
         raise Rejected("a determinant or trace is that of one square matrix")
+    if any(s[0] in "∫δ" for m, _ in grid[0][0].terms for s in m):
+        raise Rejected("no determinant or trace of an integral or of white noise is read")
+    if not _constant(grid[0][0], reading):
+        raise Rejected("no determinant or trace of a matrix that depends on time is read")
     return grid[0][0]
+
+
+def _constant(poly: Poly, reading: Reading) -> bool:
+    """Tell whether no letter depends on time, inverses by what they invert."""
+    names = {letter: matrix for matrix, letter in reading.inverses.items()}
+    letters = {parts(a)[0] for _, w in poly.terms for a in w}
+    return all(_constant(names[a], reading) if a in names else a in reading.context.constants for a in letters)
 
 
 def _find(atom: Atom, reading: Reading) -> str | None:
@@ -341,7 +391,7 @@ def _find(atom: Atom, reading: Reading) -> str | None:
 
 def _trace(body: Term, reading: Reading) -> Poly:
     """Read a trace as a sum of the traces of products, each of which is declared."""
-    return _traces(_square(body, reading), reading)
+    return _traces(square_of(body, reading), reading)
 
 
 def _traces(poly: Poly, reading: Reading) -> Poly:
@@ -357,12 +407,18 @@ def _traces(poly: Poly, reading: Reading) -> Poly:
 
 def _entry(body: Term, reading: Reading) -> Poly:
     """Read the entry of a matrix with one row and one column, which is its trace; that of the identity is 1."""
-    poly = _square(body, reading)
-    if not any(f.kind == "single" and f.matrix[0][0].rows == poly.rows for f in reading.context.facts.values()):
-        raise MissingInverse(f"the dimension {poly.rows} is not known to be 1")
+    poly = single_of(body, reading)
     rest = Poly({(m, w): c for (m, w), c in poly.terms.items() if w}, poly.rows, poly.cols)
     ones = Poly({(m, ()): c for (m, w), c in poly.terms.items() if not w}, ANY, ANY)
     return _traces(rest, reading) + ones
+
+
+def single_of(body: Term, reading: Reading) -> Poly:
+    """Read a matrix that is known to have one row and one column."""
+    poly = square_of(body, reading)
+    if not any(f.kind == "single" and f.matrix[0][0].rows == poly.rows for f in reading.context.facts.values()):
+        raise MissingInverse(f"the dimension {poly.rows} is not known to be 1")
+    return poly
 
 
 def total(poly: Poly, index: str, count: str, real: Real) -> Poly:
@@ -377,7 +433,7 @@ def total(poly: Poly, index: str, count: str, real: Real) -> Poly:
         name = real.find("sum", Poly({(moving, ()): 1}, ANY, ANY), None, index) if moving else count
         if name is None:
             raise MissingInverse(f"the sum of {' '.join(moving)} is not declared")
-        result = result + fixed * scalar(name)
+        result = result + multiply(fixed, scalar(name))
     return result
 
 
@@ -400,12 +456,13 @@ def over(term: Term, reading: Reading) -> Poly:
             case Product(factors):
                 total = ONE
                 for factor in factors:
-                    total = total * over(factor, reading)
+                    total = multiply(total, over(factor, reading))
                 return total
             case Power(body, exponent):
                 return power(over(body, reading), exponent)
             case Quotient(top, bottom):
-                return value(bottom, reading) * over(top, reading)
+                over(bottom, reading)  # the quotient exists
+                return multiply(value(bottom, reading), over(top, reading))
             case _:
                 raise
 
@@ -428,6 +485,8 @@ def point_of(term: Term) -> str:
 def _integral(term: Definite, reading: Reading) -> Poly:
     if (point_of(term.lower), point_of(term.upper)) == (ORIGIN, "t"):
         assert isinstance(term.upper, Symbol)
+        variable(term.upper, reading)
+        _check_bound(term, reading)
         name = reading.real.find("integral", value(replaced(term.body, term.symbol, term.upper), reading))
         if name is None:
             raise MissingInverse("an integral from 0 to t that is not declared")
@@ -435,11 +494,21 @@ def _integral(term: Definite, reading: Reading) -> Poly:
     body, bounds = value(term.body, reading), (point_of(term.lower), point_of(term.upper))
     name = reading.real.find("improper", body)
     whole = bounds == ("-" + INFINITY, INFINITY)
-    if name is None or term.symbol.name != FREQUENCY or not (whole or bounds == (ORIGIN, INFINITY)):
+    if name is None or variable(term.symbol, reading) != FREQUENCY or not (whole or bounds == (ORIGIN, INFINITY)):
         raise MissingInverse("an improper integral that is not declared")
     if whole and reflect(body, FREQUENCY, reading.real) != body:
         raise Rejected("the integrand is not even")
     return scalar(name).scale(2 if whole else 1)
+
+
+def _check_bound(term: Definite, reading: Reading) -> None:
+    """Reject an integrand with t as well as the variable of integration, or with what is defined by that."""
+    name, real = term.symbol.name, reading.real
+    if name != TIME:
+        _symbol(term.symbol, reading)
+        others = {s.name for s in walk(term.body) if isinstance(s, Symbol) and s.name != name}
+        if name in real.atoms or any(real.varies(s, v) for s in others for v in (name, TIME)):
+            raise Rejected(f"the integrand depends on {TIME}, or through a symbol on {name}")
 
 
 def replaced(term: Term, old: Symbol, new: Symbol) -> Term:

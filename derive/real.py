@@ -8,7 +8,7 @@ rules search nothing, and use the standard library only.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -20,10 +20,15 @@ SIGNS = {"≥": "nonnegative", ">": "positive", "≠": "nonzero"}
 NEGATION = "¬"  # the fact (for ≠: the relation) that the claim is false
 ORIGIN, INFINITY = "0", "∞"
 FREQUENCY = "ω"  # the variable of improper integrals
+TIME = "t"  # the variable of integrals from 0
+COMPLEX, UNIT = "s", "j"  # a generic complex number, and the imaginary unit
+AXIS = (UNIT, FREQUENCY)  # the factors of a point on the imaginary axis
 CIRCLE = "π"  # the scalar that stands for the circle's number
+RESERVED = frozenset({FREQUENCY, TIME, COMPLEX, UNIT, CIRCLE})  # scalars to which the rules give a meaning
 MATRIX = ("det", "trace")  # atoms of a matrix polynomial
 EVERYWHERE = ("defined", "root", "reciprocal", "absolute", "part", "exp", "log", "arctan", "sum")  # functions of ``of``
 LOGARITHMS = ("log modulus", "log value")  # atoms of a complex function of a real variable
+LARGEST, LONGEST = 100_000, 400  # products that one multiplication writes, and the factors of one product
 
 
 @dataclass(frozen=True)
@@ -63,6 +68,7 @@ class Real:
     sums: tuple[tuple[str, str, Poly, Poly], ...] = ()  # proved limits of sums: variable, point, sum, limit
     families: Mapping[str, Family] = field(default_factory=dict[str, Family])
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
+    pending: frozenset[str] = frozenset()  # scalars that stand for others, once their declarations are taken up
     generic: bool = False  # whether some facts hold only for all but finitely many values of a variable
 
     def find(self, kind: str, of: Poly, by: Poly | None = None, over: str = "") -> str | None:
@@ -85,7 +91,7 @@ class Real:
             product = constant(c)
             for s in m:
                 atom = self.atoms.get(s)
-                product = product * (self.unfold(atom.of) if atom and atom.kind == "defined" else scalar(s))
+                product = multiply(product, self.unfold(atom.of) if atom and atom.kind == "defined" else scalar(s))
             total = total + product
         return total
 
@@ -96,12 +102,30 @@ class Real:
         atom = self.atoms.get(name)
         if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False
-        if atom.kind in (*LOGARITHMS, *MATRIX):
-            return atom.over == variable
+        if atom.kind in (*LOGARITHMS, *MATRIX) and variable in (atom.over, COMPLEX):
+            return variable == atom.over
         if atom.kind == "sum" and atom.over == variable:
             return False
+        if atom.kind == "integral" and variable == TIME:
+            return True
+        family = self.families.get(atom.over) if atom.kind == "roots" else None
+        if family is not None and variable in (family.real, family.imaginary):
+            return True
         below = scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
         return any(self.varies(s, variable) for s in below)
+
+    def reached(self, names: Iterable[str]) -> set[str]:
+        """Return the scalars, and all that the atoms among them are made of."""
+        found, waiting = set[str](), set(names)
+        while waiting:
+            found.add(name := waiting.pop())
+            atom, family = self.atoms.get(name), self.families.get(name)
+            if atom is not None:
+                waiting |= scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
+            if family is not None:
+                waiting |= {family.real, family.imaginary}
+            waiting -= found
+        return found
 
 
 def constant(value: Fraction | int) -> Poly:
@@ -127,11 +151,21 @@ def number(poly: Poly) -> Fraction | None:
     return None if scalars_of(poly) else poly.terms.get(((), ()), Fraction(0))
 
 
+def multiply(one: Poly, two: Poly) -> Poly:
+    """Return the product of two polynomials, of bounded size."""
+    length = sum(max((len(m) for m, _ in p.terms), default=0) for p in (one, two))
+    if len(one.terms) * len(two.terms) > LARGEST or length > LONGEST:
+        raise Rejected("a product is too large to be written out")
+    return one * two
+
+
 def power(poly: Poly, exponent: int) -> Poly:
     """Return a power with an exponent that is a natural number."""
+    if not 0 <= exponent <= LONGEST:
+        raise Rejected(f"the exponent {exponent} is no natural number up to {LONGEST}")
     total = ONE
     for _ in range(exponent):
-        total = total * poly
+        total = multiply(total, poly)
     return total
 
 
@@ -244,7 +278,7 @@ def derivative(poly: Poly, variable: str, real: Real) -> Poly:
         for i, s in enumerate(m):
             if real.varies(s, variable):
                 rest = Poly({((*m[:i], *m[i + 1 :]), ()): c}, ANY, ANY)
-                total = total + rest * rate(s, variable, real)
+                total = total + multiply(rest, rate(s, variable, real))
     return total
 
 
@@ -294,7 +328,7 @@ def _substitute(poly: Poly, variable: str, real: Real, image) -> Poly:
     for (m, _), c in poly.terms.items():
         product = constant(c)
         for s in m:
-            product = product * (image(s) if real.varies(s, variable) else scalar(s))
+            product = multiply(product, image(s) if real.varies(s, variable) else scalar(s))
         total = total + product
     return total
 
@@ -354,6 +388,8 @@ def reflect(poly: Poly, variable: str, real: Real) -> Poly:
 
 def limit(poly: Poly, variable: str, point: str, real: Real, context: Context) -> Poly:
     """Return the limit as the variable, positive, tends to 0 or to infinity: of sums, products and known functions."""
+    if point not in (ORIGIN, INFINITY):
+        raise Rejected("a limit is taken at 0 or at infinity")
     total = ZERO
     for known in (k for k in real.sums if k[:2] == (variable, point)):
         poly, reached = _less(poly, known[2], known[3], variable, real)
@@ -361,7 +397,7 @@ def limit(poly: Poly, variable: str, point: str, real: Real, context: Context) -
     for (m, _), c in poly.terms.items():
         moving = tuple(s for s in m if real.varies(s, variable))
         fixed = Poly({(tuple(s for s in m if s not in moving), ()): c}, ANY, ANY)
-        total = total + fixed * _limit_of_product(moving, variable, point, real, context)
+        total = total + multiply(fixed, _limit_of_product(moving, variable, point, real, context))
     return total
 
 
@@ -441,7 +477,8 @@ def _limit_of_scalar(name: str, variable: str, point: str, real: Real, context: 
         case "exp" if slope is not None and _positive(-slope, context):
             return ZERO
         case "times arctan" if atom is not None and _is_shift(atom.of, variable, real):
-            width = real.find("absolute", atom.by or ZERO)
+            by = atom.by or ZERO
+            width = None if _moves(by, variable, real) else real.find("absolute", by)
             if width is None:
                 raise Rejected(f"the modulus in {name} is not declared")
             return scalar(CIRCLE).scale(Fraction(1, 2)) * scalar(width)
@@ -517,9 +554,9 @@ def sign_product(product: SignProduct, facts: Mapping[str, Fact]) -> tuple[Poly,
         if fact.kind not in SIGNS.values() or (fact.kind == "nonzero" and product.facts.count(name) % 2):
             raise Rejected(f"the fact {name} does not say that a number is nonnegative")
         strict = strict and fact.kind != "nonnegative"
-        total = total * fact.matrix[0][0]
+        total = multiply(total, fact.matrix[0][0])
     for square in product.squares:
-        total = total * square * square
+        total = multiply(multiply(total, square), square)
     return total, strict
 
 

@@ -16,9 +16,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from fractions import Fraction
 
-from derive.functions import COMPLEX, Definite, Infinity, Limit, Log, Quotient, point_of, total, value
+from derive.functions import Definite, Infinity, Limit, Log, Quotient, Rate, Start, point_of, square_of, total, value
 from derive.kernel import Poly, Rejected, identity, parts
-from derive.real import FREQUENCY, LOGARITHMS, ZERO, reflect, scalar, scalars_of
+from derive.real import AXIS, COMPLEX, FREQUENCY, TIME, UNIT, ZERO, reflect, scalar, scalars_of
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower, walk
 
@@ -34,14 +34,21 @@ def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
     _match(lemma, statement, images, reading)
     if _put(lemma, images) != statement or not images:
         raise Rejected("the statement is no instance of the step")
-    names = {s.name for s in images}
-    bound = {n.symbol.name for side in _sides(lemma) for n in walk(side) if isinstance(n, (Limit, Definite))}
-    for symbol in (n for side in _sides(lemma) for n in walk(side) if isinstance(n, Symbol)):
-        if symbol.name not in names and any(reading.real.varies(symbol.name, p) for p in names):
+    names, nodes = {s.name for s in images}, [n for side in _sides(lemma) for n in walk(side)]
+    for symbol in (n for n in nodes if isinstance(n, Symbol)):
+        if symbol not in images and (symbol.name in names or any(reading.real.varies(symbol.name, p) for p in names)):
             raise Rejected(f"{symbol.name} stands for something that depends on a parameter")
+    bound = {n.symbol.name for n in nodes if isinstance(n, (Limit, Definite, Rate, Start, At))}
+    bound |= {n.index.name for n in nodes if isinstance(n, (Total, Roots))}
+    bound |= {FREQUENCY, COMPLEX, TIME} if reading.real.generic else set()
+    if len(names) != len(images) or bound & names:
+        raise Rejected("a parameter has two images, or is a variable of the step")
     for image in images.values():
-        if any(reading.real.varies(s, v) for s in scalars_of(value(image, reading)) for v in bound):
-            raise Rejected("the image of a parameter depends on the variable of a limit or integral")
+        poly = value(image, reading)
+        if any(reading.real.varies(s, v) for s in scalars_of(poly) for v in bound):
+            raise Rejected("the image of a parameter depends on a variable of the step, or on one with exceptions")
+        if not is_real(poly, reading):
+            raise Rejected("the image of a parameter is not known to be real")
     _readable(statement, reading)
 
 
@@ -149,6 +156,8 @@ def check_conjugate(statement: Equation, links: Links, reading: Reading) -> None
         for y in real.families.values()
         if y.index == i.name and any(_uses(left, p, reading) for p in (y.real, y.imaginary))
     ]
+    if i.name in real.reached(scalars_of(left)):
+        raise Rejected("the function depends on the number of the root")
     if len(moved) != 1 or reflect(left, moved[0].imaginary, real) != right:
         raise Rejected("it is no sum over one family and its conjugate")
 
@@ -178,9 +187,9 @@ def check_same_roots(statement: Equation, links: Links, reading: Reading) -> Non
                 if isinstance(point, Neg):
                     raise Rejected("the first product is read at s")
                 template, first = body, parts_of
-                _check_function(template, root, reading)
             elif _replaced(template, dict(zip(first, parts_of, strict=True))) != body:
                 raise Rejected("the sums are of different functions")
+            _check_function(body, root, reading)
     _readable(statement, reading)
 
 
@@ -194,6 +203,8 @@ def _check_function(template: Term, root: Symbol, reading: Reading) -> None:
     """Reject a template that depends on more than the parts of one root."""
     family = reading.real.families[root.name]
     for s in scalars_of(value(template, reading)):
+        if family.index in reading.real.reached([s]):
+            raise Rejected("the function depends on the number of the root")
         others = [y for y in reading.real.families.values() if y is not family]
         if any(reading.real.varies(s, p) for y in others for p in (y.real, y.imaginary)):
             raise Rejected("the function depends on other roots")
@@ -281,7 +292,7 @@ def check_trace_of_roots(statement: Equation, links: Links, reading: Reading) ->
         ) if name == COMPLEX and (root, index, count) == (other, i, m):
             ((poly,),), ((rest,),) = lower(body, reading), lower(matrix, reading)
             point = identity(poly.rows).scale(1, (COMPLEX,))
-            if point - poly != rest or not reading.context.is_real(rest):
+            if point - poly != rest or not reading.context.is_real(rest) or _uses(rest, COMPLEX, reading):
                 raise Rejected("the determinant is not that of sI - M with M real")
             _readable(statement, reading)
         case _:
@@ -318,9 +329,7 @@ def determinant_claim(statement: Equation, reading: Reading) -> Poly:
         factors = side.factors if isinstance(side, Product) else (side,)
         if not all(isinstance(f, Det) for f in factors):
             raise Rejected("both sides must be products of determinants")
-        matrices = [lower(f.body, reading)[0][0] for f in factors if isinstance(f, Det)]
-        if any(p.rows != p.cols for p in matrices):
-            raise Rejected("a determinant is that of a square matrix")
+        matrices = [square_of(f.body, reading) for f in factors if isinstance(f, Det)]
         product = matrices[0]
         for matrix in matrices[1:]:
             product = product * matrix
@@ -339,10 +348,14 @@ def check_positive(statement: Equation, facts: Sequence[str], reading: Reading) 
         case Trace(body), "≥", ["psd" | "pd", "psd" | "pd"]:
             ((m,),), ((p,),) = found[0].matrix, found[1].matrix
             accepted = lower(body, reading) == ((m * p,),)
+            if not any(reading.context.alphabet.transpose(x) == x for x in (m, p)):
+                raise Rejected("one of the matrices must be symmetric")
         case _:
             raise Rejected("it is no determinant or trace of what is known to be positive")
     if not accepted:
         raise Rejected("the facts are about other matrices")
+    if not all(reading.context.is_real(x) for fact in found for row in fact.matrix for x in row):
+        raise Rejected("the matrices are not known to be real")
     value(statement.lhs, reading)
 
 
@@ -359,36 +372,67 @@ def check_resolvent(statement: Equation, links: Links, reading: Reading) -> None
     names = {letter: poly for poly, letter in reading.inverses.items()}
     for m, w in poly.terms:
         inverses = [parts(a)[0] for a in w if parts(a)[0] in names]
-        if COMPLEX in m or sum(_is_resolvent(names[a], reading) for a in inverses) != 1:
+        resolvents = [a for a in inverses if _is_resolvent(names[a], reading)]
+        if any(reading.real.varies(s, COMPLEX) for s in m) or len(resolvents) != 1:
             raise Rejected("each product has one resolvent, and no s beside it")
-        if any(COMPLEX in k for a in inverses if not _is_resolvent(names[a], reading) for k, _ in names[a].terms):
+        rest = {parts(a)[0] for a in w}.difference(resolvents)
+        if rest & reading.context.complex:
             raise Rejected("another factor depends on s")
 
 
 def _is_resolvent(poly: Poly, reading: Reading) -> bool:
     rest = poly - identity(poly.rows).scale(1, (COMPLEX,))
-    return bool(reading.context.is_real(rest)) and all(COMPLEX not in m for m, _ in rest.terms)
+    return bool(reading.context.is_real(rest)) and not _uses(rest, COMPLEX, reading)
 
 
 def real_coefficients(poly: Poly, reading: Reading) -> bool:
-    """Tell whether a function of s takes conjugate values at conjugate points: its scalars and matrices are real."""
-    real, meanings = reading.real, dict(_meanings(reading))
+    """Tell whether a function of s is rational with real coefficients: it takes conjugate values at conjugate points.
 
-    def matrix(p: Poly) -> bool:
-        letters = {parts(a)[0] for _, w in p.terms for a in w}
-        return all(plain(s) for m, _ in p.terms for s in m) and all(
-            a not in reading.context.complex or (a in meanings and matrix(meanings[a])) for a in letters
+    What is shown of such a function for large real s is then true of it on the axis as well.
+    """
+    real = reading.real
+
+    def known(s: str) -> bool | None:
+        atom = real.atoms.get(s)
+        if s in AXIS or atom is None:
+            return s not in AXIS
+        if atom.kind in RATIONAL:
+            return None
+        return not real.varies(s, COMPLEX) and not real.varies(s, FREQUENCY)
+
+    return _made_of(poly, known, reading)
+
+
+def is_real(poly: Poly, reading: Reading, point: bool = False) -> bool:
+    """Tell whether a number is real: the imaginary unit and complex matrices are not in it, s only if it is real."""
+
+    def known(s: str) -> bool | None:
+        atom = reading.real.atoms.get(s)
+        if s in (COMPLEX, UNIT) or (atom is not None and atom.kind == "roots"):
+            return point and s != UNIT
+        return None if atom is not None and atom.kind in RATIONAL else True  # others are declared of real numbers
+
+    return _made_of(poly, known, reading)
+
+
+RATIONAL = ("defined", "reciprocal", "roots", "det", "trace")
+
+
+def _made_of(poly: Poly, known: Callable[[str], bool | None], reading: Reading) -> bool:
+    """Tell whether all scalars of a polynomial are known as good, or made of such, and so the letters of matrices."""
+    meanings, complex_letters = dict(_meanings(reading)), reading.context.complex
+
+    def good(p: Poly, above: frozenset[str]) -> bool:
+        letters = {parts(a)[0] for _, w in p.terms for a in w} & complex_letters
+        return all(number(s, above) for s in scalars_of(p)) and all(
+            a in meanings and a not in above and good(meanings[a], above | {a}) for a in letters
         )
 
-    def plain(s: str) -> bool:
-        atom = real.atoms.get(s)
-        if atom is None:
-            return s == COMPLEX or s not in ("j", FREQUENCY)
-        if atom.kind in ("det", "trace"):
-            return matrix(atom.of)
-        return atom.kind not in LOGARITHMS and all(plain(t) for t in scalars_of(atom.of))
+    def number(s: str, above: frozenset[str]) -> bool:
+        found = known(s)
+        return good(reading.real.atoms[s].of, above) if found is None else found
 
-    return all(plain(s) for s in scalars_of(poly))
+    return good(poly, frozenset())
 
 
 def _meanings(reading: Reading) -> Iterator[tuple[str, Poly]]:

@@ -11,12 +11,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from derive.functions import Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value
+from derive.functions import PI, Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value, variable
 from derive.kernel import Poly, Rejected
 from derive.real import (
+    COMPLEX,
     FREQUENCY,
     LOGARITHMS,
     SIGNS,
+    TIME,
     ZERO,
     Atom,
     Sign,
@@ -30,13 +32,14 @@ from derive.real import (
     scalar,
     scalars_of,
 )
-from derive.roots import CHECKS, real_coefficients
+from derive.roots import CHECKS, is_real, real_coefficients
 from derive.rules import Fact
 from derive.spectral import At, Modulus
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term
 
 RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument", *CHECKS})
-TIME = "t"
+KINDS = ("root", "reciprocal", "absolute", "part", "exp", "log", "arctan", "integral", "improper", "spectral")
+ANYWHERE = ("reciprocal", "defined", "roots", "det", "trace", "log modulus", "log value")  # atoms of complex numbers
 
 
 # ------------------------------------------------------------------------------------------------ taking up
@@ -44,6 +47,8 @@ def adopt_scalar(reading: Reading, name: str, statement: Equation) -> Reading:
     """Extend a reading by a statement about scalars that is declared or proved."""
     lhs, rhs = statement.lhs, statement.rhs
     real, context = reading.real, reading.context
+    if statement.relation not in ("=", ":=", *SIGNS):
+        raise Rejected(f"{statement.relation} is no relation between numbers")
     if statement.relation in SIGNS:
         difference = value(lhs, reading) - value(rhs, reading)
         fact = Fact(SIGNS[statement.relation], ((difference,),))
@@ -77,6 +82,8 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
         MissingInverse: the reason, or an atom within, is not there yet.
         Rejected: the reason is about something else.
     """
+    if kind not in KINDS:
+        raise Rejected(f"{name}: {kind} is no function of a number")
     try:
         atom = spectral_atom(name, of, reading) if kind == "spectral" else Atom(name, kind, value(of, reading))
     except Rejected as error:
@@ -84,6 +91,8 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
     kind = atom.kind
     if kind in LOGARITHMS and not real_coefficients(atom.of, reading):
         raise Rejected(f"{name}: the coefficients of the function are not known to be real")
+    if kind not in ANYWHERE and not all(is_real(p, reading, _s_is_real(reading)) for p in (atom.of, atom.by) if p):
+        raise MissingInverse(f"{name}: its argument is not known to be real")
     context, wanted = reading.context, needs(kind)
     if wanted or because:
         fact = context.facts.get(because)
@@ -108,7 +117,9 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
 
 def _check_order(atom: Atom, reading: Reading) -> None:
     """Reject a scalar that is declared twice, or that what it stands for, or an atom or relation, already uses."""
-    used = {s for a in reading.real.atoms.values() for s in scalars_of(a.of)} | scalars_of(atom.of)
+    polys = [p for a in (*reading.real.atoms.values(), atom) for p in (a.of, a.by) if p is not None]
+    polys += [f.matrix[0][0] for f in reading.context.facts.values()] + list(reading.context.relations.values())
+    used = {s for poly in polys for s in scalars_of(poly)}
     if atom.name in reading.real.atoms or atom.name in used:
         raise Rejected(f"{atom.name} is used before it is declared")
 
@@ -119,6 +130,7 @@ def scalar_claims(statement: Equation, rule: str, reading: Reading) -> list[Poly
     if rule == "scalar":
         return [value(statement.lhs, reading) - value(statement.rhs, reading)]
     difference = value(statement.lhs, reading) - value(statement.rhs, reading)
+    variable(replace(PI, name=TIME), reading)
     return [derivative(difference, TIME, reading.real), at_origin(difference, TIME, reading.real)]
 
 
@@ -130,6 +142,7 @@ def check_scalar(
         if sign is None:
             raise Rejected("the proof is of another kind than the rule")
         claim = value(statement.lhs, reading) - value(statement.rhs, reading)
+        _check_real(sign, claim, statement.relation, reading)
         replay_sign(sign, claim, statement.relation, reading.context)
         return
     if statement.relation != "=" and rule not in ("instance", "sum over"):
@@ -139,6 +152,28 @@ def check_scalar(
         **CHECKS,
     }  # fmt: skip
     checks[rule](statement, links, reading)
+
+
+def _s_is_real(reading: Reading) -> bool:
+    """Tell whether the theory takes s to be real, and large."""
+    return Fact("positive", ((scalar(COMPLEX),),)) in reading.context.facts.values()
+
+
+def _check_real(sign: Sign, claim: Poly, relation: str, reading: Reading) -> None:
+    """Reject a certificate of sign about complex numbers: a square is nonnegative, and order has a meaning, for reals.
+
+    That s is real is a fact that the certificate has to name. A product of numbers different from zero is different
+    from zero, complex or not.
+    """
+    facts = reading.context.facts
+    named = [facts[name] for product in sign.products for name in product.facts if name in facts]
+    if relation == "≠" and len(sign.products) == 1 and not sign.products[0].squares:
+        return
+    point = Fact("positive", ((scalar(COMPLEX),),)) in named
+    polys = [claim, *(p for product in sign.products for p in product.squares)]
+    polys += [fact.matrix[0][0] for fact in named if fact.kind == "nonzero"]
+    if not all(is_real(poly, reading, point) for poly in polys):
+        raise Rejected("a sign of what is not known to be real")
 
 
 def _check_both(statement: Equation, links: Sequence[Equation], reading: Reading) -> None:
@@ -154,9 +189,7 @@ def _check_argument(statement: Equation, links: Sequence[Equation], reading: Rea
     A limit at infinity takes no more than equality near it, so equality but for finitely many points is enough.
     """
     match statement, links:
-        case (
-            Equation(Limit(f, x, Infinity()), "=", v), [Equation(a, "=", b)]
-        ) if f == a:
+        case (Equation(Limit(f, x, Infinity()), "=", v), [Equation(a, "=", b)]) if f == a:
             value(f, reading), value(b, reading)
             if value(Limit(b, x, Infinity()), reading) != value(v, reading) or _moves(v, x, reading):
                 raise Rejected("the limit of the equal function is another")
@@ -226,5 +259,10 @@ CONTINUOUS = ("times log", "times arctan")
 
 def _continuous(poly: Poly, variable: str, reading: Reading) -> bool:
     """Tell whether a polynomial in the variable and functions continuous in it, whose derivative may have gaps."""
-    moving = {s for s in scalars_of(reading.real.unfold(poly)) if s != variable and reading.real.varies(s, variable)}
-    return all(s in reading.real.atoms and reading.real.atoms[s].kind in CONTINUOUS for s in moving)
+    real = reading.real
+
+    def moving(p: Poly) -> set[str]:
+        return {s for s in scalars_of(real.unfold(p)) if s != variable and real.varies(s, variable)}
+
+    found = [real.atoms[s] for s in moving(poly)]
+    return all(a.kind in CONTINUOUS and not moving(a.of) and a.by is not None and not moving(a.by) for a in found)
