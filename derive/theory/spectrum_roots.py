@@ -183,7 +183,7 @@ def _derive_root(b: ScalarBuilder) -> None:
     )  # fmt: skip
 
 
-def _derive_tail(b: ScalarBuilder, w: Term, a: Term, c: Term, sign: str, k: int) -> None:
+def _derive_tail(b: ScalarBuilder, w: Symbol, a: Symbol, c: Symbol, sign: str, k: int) -> None:
     """Derive the limits of ln(u/ω²) and of ω ln(u/ω²), with u = (ω ± β)² + α²."""
     u, slope, size = square(_shifted(w, c, k)) + square(a), 2 * c, square(a) + square(c)
     ratio, shift = Log(u) - Log(square(w)), slope if k > 0 else -slope
