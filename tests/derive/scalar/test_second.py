@@ -17,7 +17,7 @@ from derive.errors import InputError
 from derive.functions import Power, Quotient, Root, value
 from derive.kernel import Rejected
 from derive.scalar.second_order import FORMULAS, formula
-from derive.terms import Equation, Number, Zero
+from derive.terms import Equation, Zero
 from derive.theory import lecture, scalar, scalar_builder
 from derive.theory.builder import NotDerived
 from derive.theory.scalar_builder import ScalarBuilder
@@ -266,7 +266,7 @@ def test_wrong_signs_are_not_derived(builder):
     for statement, using in (
         (Equation(det, ">", ZERO), [*facts, "w2 >= 0"]),
         (Equation(-det, "≥", ZERO), [*facts, "w2 > 0"]),
-        (Equation(det, ">", Number(1) * s["P11"]), [*facts, "w2 > 0"]),
+        (Equation(det, ">", s["P11"]), [*facts, "w2 > 0"]),
     ):
         with pytest.raises(NotDerived):
             builder.sign("mutant", statement, "", using, **known)
