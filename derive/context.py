@@ -107,6 +107,7 @@ class Theory:
     nonnegative: set[str] = field(default_factory=set[str])
     complex: set[str] = field(default_factory=set[str])
     arbitrary: set[str] = field(default_factory=set[str])
+    running: set[str] = field(default_factory=set[str])
     families: dict[str, Family] = field(default_factory=dict[str, Family])
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
     speaks_of: dict[str, frozenset[str]] = field(default_factory=dict)  # scalars in a declaration
@@ -188,6 +189,13 @@ class Theory:
         """Declare a real parameter that stays arbitrary: no hypothesis may speak of it, and any real may replace it."""
         self.arbitrary.add(name)
         return self.scalar(name, glyph, meaning=meaning)
+
+    def run(self, name: str, glyph: Glyph | None = None, *, meaning: str = "") -> Symbol:
+        """Declare a parameter r > 0, to differentiate under an integral; nothing else may be assumed of it."""
+        self.running.add(name)
+        symbol = self.scalar(name, glyph, nonnegative=True, meaning=meaning)
+        self.assume(f"{name} > 0", symbol, ">", text=meaning)
+        return symbol
 
     def roots(
         self, name: str, index: Symbol, count: Symbol, glyph: Glyph | None = None, *, of: str = "", meaning: str = ""
@@ -274,11 +282,12 @@ class Theory:
             complex=frozenset(self.complex),
             facts={f"I{s}": Fact("pd", ((identity(s),),)) for s in self.sizes()},
         )
-        generic = any(isinstance(d, Declared) and d.generic for d in self.declared.values())
+        generic = frozenset(d.generic for d in self.declared.values() if isinstance(d, Declared) and d.generic)
         self._check_scalars()
         real = Real(
-            families=dict(self.families), arbitrary=frozenset(self.arbitrary), pending=self._pending(), generic=generic
-        )
+            families=dict(self.families), arbitrary=frozenset(self.arbitrary), pending=self._pending(), generic=generic,
+            running=frozenset(self.running),
+        )  # fmt: skip
         reading = Reading(context, real=real)
         for name, images in self.maps.items():
             lowered = {self.symbols[letter].letter: lower(image, reading)[0][0] for letter, image in images.items()}
@@ -307,6 +316,8 @@ class Theory:
         taken = {n for f in self.families.values() for n in (f.real, f.imaginary, f.index, f.count)} | set(
             self.families
         )
+        if self.running & (taken | RESERVED | self.arbitrary):
+            raise Rejected("a running parameter is declared as something else as well")
         if self.arbitrary & (taken | RESERVED | self.nonnegative) or {COMPLEX, UNIT} & self.nonnegative:
             raise Rejected("an arbitrary parameter, s or j is declared as something else as well")
         if taken & RESERVED or any(counts[f.index] != f.count for f in self.families.values()):
@@ -364,7 +375,8 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
 def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> None:
     """Reject a hypothesis on an arbitrary parameter, unless it holds for all but one value of a variable.
 
-    A scalar may be defined by one, and an atom made of it: its reason is a fact that is proved.
+    A scalar may be defined by one, and an atom made of it: its reason is a fact that is proved. The same for a running
+    parameter r, of which it is known that r > 0.
     """
     if isinstance(item, DeclaredAtom):
         return
@@ -372,22 +384,24 @@ def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | Declared
     match item:
         case Declared(statement=Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero())) if item.generic:
             shift, width = value(x, reading) - scalar(item.generic), value(a, reading)
-            used, variables = scalars_of(shift) | scalars_of(width), (COMPLEX, FREQUENCY, TIME)
+            used, variables = scalars_of(shift) | scalars_of(width), (COMPLEX, FREQUENCY, TIME, *real.running)
             moving = any(real.varies(s, v) for s in used for v in variables)
             if (
-                item.generic not in (COMPLEX, FREQUENCY)
+                item.generic not in (COMPLEX, FREQUENCY, *real.running)
                 or moving
                 or not (is_real(shift, reading) and is_real(width, reading))
             ):
                 raise Rejected(
                     f"{item.name}: x must be the variable and a real shift, a must be real and not depend on it"
                 )
+        case Declared(statement=Equation(Symbol(name=r), ">", Zero())) if r in real.running and not item.generic:
+            pass
         case Declared(statement=Equation(Symbol(scalar=True) as lhs, ":=", _)) if not item.generic:
             parts = {p for f in real.families.values() for p in (f.real, f.imaginary, f.index, f.count)}
-            if lhs.name in RESERVED | real.arbitrary | parts or lhs.name in real.families:
+            if lhs.name in RESERVED | real.arbitrary | real.running | parts or lhs.name in real.families:
                 raise Rejected(f"{item.name}: {lhs.name} has a meaning already")
-        case _ if getattr(item, "generic", "") or real.reached(names) & real.arbitrary:
-            raise Rejected(f"{item.name}: nothing may be assumed of an arbitrary parameter")
+        case _ if getattr(item, "generic", "") or real.reached(names) & (real.arbitrary | real.running):
+            raise Rejected(f"{item.name}: nothing may be assumed of an arbitrary or running parameter")
         case _:
             pass
 

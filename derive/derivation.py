@@ -51,7 +51,7 @@ Rule = Literal[
     "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
     "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
     "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "trace of roots", "determinant", "exchange",
-    "positive", "resolvent", "single",
+    "positive", "resolvent", "single", "parameter", "any sign", "logarithms",
 ]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 PARTS: Mapping[str, tuple[str, ...]] = {

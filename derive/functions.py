@@ -334,8 +334,14 @@ def _variable(symbol: Symbol, point: Term) -> str:
             return COMPLEX
         case Product((Symbol() as j, Symbol() as w)) if (j.name, w.name) == AXIS:
             return FREQUENCY
+        case Sum((Symbol(scalar=True, name=x), Product((Symbol() as j, Symbol(scalar=True, name=y))))) if (
+            j.name == AXIS[0]
+        ):
+            if {x, y} & {COMPLEX, *AXIS}:
+                raise Rejected("a point of the plane has a real and an imaginary part that stay what they are")
+            return f"{x} {y}"
         case _:
-            raise Rejected("a function is taken on the imaginary axis, or along the reals")
+            raise Rejected("a function is taken on the imaginary axis, along the reals, or at a point x + jy")
 
 
 def _distance(point: Term, root: Term, reading: Reading) -> Poly:
@@ -492,12 +498,13 @@ def _integral(term: Definite, reading: Reading) -> Poly:
             raise MissingInverse("an integral from 0 to t that is not declared")
         return scalar(name)
     body, bounds = value(term.body, reading), (point_of(term.lower), point_of(term.upper))
-    name = reading.real.find("improper", body)
     whole = bounds == ("-" + INFINITY, INFINITY)
+    mirrored = reflect(body, FREQUENCY, reading.real) if whole else body
+    if mirrored != body:  # the limit of the integral over -R to R: that of f(ω) + f(-ω) over half of the axis
+        body, whole, bounds = body + mirrored, False, (ORIGIN, INFINITY)
+    name = reading.real.find("improper", body)
     if name is None or variable(term.symbol, reading) != FREQUENCY or not (whole or bounds == (ORIGIN, INFINITY)):
         raise MissingInverse("an improper integral that is not declared")
-    if whole and reflect(body, FREQUENCY, reading.real) != body:
-        raise Rejected("the integrand is not even")
     return scalar(name).scale(2 if whole else 1)
 
 
@@ -511,7 +518,7 @@ def _check_bound(term: Definite, reading: Reading) -> None:
             raise Rejected(f"the integrand depends on {TIME}, or through a symbol on {name}")
 
 
-def replaced(term: Term, old: Symbol, new: Symbol) -> Term:
+def replaced(term: Term, old: Symbol, new: Term) -> Term:
     """Replace a symbol in a term."""
     if term == old:
         return new

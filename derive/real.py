@@ -69,7 +69,8 @@ class Real:
     families: Mapping[str, Family] = field(default_factory=dict[str, Family])
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
     pending: frozenset[str] = frozenset()  # scalars that stand for others, once their declarations are taken up
-    generic: bool = False  # whether some facts hold only for all but finitely many values of a variable
+    generic: frozenset[str] = frozenset()  # variables of which finitely many values are excepted by some facts
+    running: frozenset[str] = frozenset()  # parameters of which nothing but r > 0 is assumed, for all r or almost all
 
     def find(self, kind: str, of: Poly, by: Poly | None = None, over: str = "") -> str | None:
         """Return the name of an atom; definitions in its argument may be written out or not."""
@@ -86,6 +87,8 @@ class Real:
 
     def unfold(self, poly: Poly) -> Poly:
         """Write out the definitions in a polynomial."""
+        if not any(s in self.atoms and self.atoms[s].kind == "defined" for s in scalars_of(poly)):
+            return poly
         total = ZERO
         for (m, _), c in poly.terms.items():
             product = constant(c)
@@ -102,6 +105,8 @@ class Real:
         atom = self.atoms.get(name)
         if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False
+        if " " in atom.over and any(self.varies(part, variable) for part in atom.over.split()):
+            return True  # a function at the point x + jy
         if atom.kind in (*LOGARITHMS, *MATRIX) and variable in (atom.over, COMPLEX):
             return variable == atom.over
         if atom.kind == "sum" and atom.over == variable:

@@ -40,7 +40,8 @@ def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
             raise Rejected(f"{symbol.name} stands for something that depends on a parameter")
     bound = {n.symbol.name for n in nodes if isinstance(n, (Limit, Definite, Rate, Start, At))}
     bound |= {n.index.name for n in nodes if isinstance(n, (Total, Roots))}
-    bound |= {FREQUENCY, COMPLEX, TIME} if reading.real.generic else set()
+    exempt = reading.real.running - reading.real.generic  # exceptions must not move with a running parameter
+    bound |= {FREQUENCY, COMPLEX, TIME, *exempt} if reading.real.generic else set()
     if len(names) != len(images) or bound & names:
         raise Rejected("a parameter has two images, or is a variable of the step")
     for image in images.values():
@@ -245,18 +246,18 @@ def check_modulus(statement: Equation, links: Links, reading: Reading) -> None:
             raise Rejected("the left-hand side is no logarithm of a function at a point")
     if lemma.relation != "=" or lemma.lhs != body:
         raise Rejected("the link says something else of the function")
-    real_axis = isinstance(point, Symbol)
+    place = _place(point)
     top, bottom = (lemma.rhs.top, lemma.rhs.bottom) if isinstance(lemma.rhs, Quotient) else (lemma.rhs, None)
     result = ZERO
     for sign, side in ((HALF, top), (-HALF, bottom)):
         factors = () if side is None else side.factors if isinstance(side, Product) else (side,)
         if not all(isinstance(f, Roots) for f in factors):
             raise Rejected("the function is no quotient of products over roots")
-        if square and (real_axis or not _palindromic(factors)):
+        if square and (place != (ZERO, scalar(FREQUENCY)) or not _palindromic(factors)):
             raise Rejected("the function is not known to be positive on the axis")
         for factor in factors:
             assert isinstance(factor, Roots)
-            result = result + _distances(factor, real_axis, reading).scale(sign)
+            result = result + _distances(factor, place, reading).scale(sign)
     value(statement.lhs, reading)
     if value(rhs, reading) != result:
         raise Rejected("the right-hand side is not the sum of the logarithms of the distances")
@@ -268,14 +269,26 @@ def _palindromic(factors: Sequence[Term]) -> bool:
     return plain == turned
 
 
-def _distances(factor: Roots, real_axis: bool, reading: Reading) -> Poly:
+def _place(point: Term) -> tuple[Poly, Poly]:
+    """Return the real and the imaginary part of a point: s, which is real, jω, or x + jy."""
+    match point:
+        case Symbol(name=x):
+            return scalar(x), ZERO
+        case Product((_, Symbol(name=y))):
+            return ZERO, scalar(y)
+        case Sum((Symbol(name=x), Product((_, Symbol(name=y))))):
+            return scalar(x), scalar(y)
+        case _:
+            raise Rejected("the point is neither s, nor jω, nor x + jy")
+
+
+def _distances(factor: Roots, place: tuple[Poly, Poly], reading: Reading) -> Poly:
     """Return the sum of ln |point - root|^2 over the roots of a real polynomial."""
     family, real = reading.real.families[factor.root.name], reading.real
     re, im = scalar(family.real), scalar(family.imaginary)
     if isinstance(factor.point, Neg):
-        re = -re  # |-jω - λ| = |jω - (-λ)|, and the conjugates are roots as well
-    along = scalar(COMPLEX) - re if real_axis else scalar(FREQUENCY) - im
-    across = im if real_axis else re
+        re = -re  # |-s - λ| = |s + λ|, and the conjugates are roots as well
+    along, across = place[0] - re, place[1] - im
     name = real.find("log", along * along + across * across)
     if name is None:
         raise Rejected("the logarithm of a distance is not declared")

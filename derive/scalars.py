@@ -13,6 +13,8 @@ from dataclasses import replace
 
 from derive.functions import PI, Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value, variable
 from derive.kernel import Poly, Rejected
+from derive.parameter import CHECKS as PARAMETER
+from derive.parameter import regular_logarithm
 from derive.real import (
     COMPLEX,
     FREQUENCY,
@@ -37,7 +39,7 @@ from derive.rules import Fact
 from derive.spectral import At, Modulus
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term
 
-RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument", *CHECKS})
+RULES = frozenset({"sign", "both", "squeeze", "integral", "same argument", *CHECKS, *PARAMETER})
 KINDS = ("root", "reciprocal", "absolute", "part", "exp", "log", "arctan", "integral", "improper", "spectral")
 ANYWHERE = ("reciprocal", "defined", "roots", "det", "trace", "log modulus", "log value")  # atoms of complex numbers
 
@@ -84,6 +86,8 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
     """
     if kind not in KINDS:
         raise Rejected(f"{name}: {kind} is no function of a number")
+    if because and because not in reading.context.facts:
+        raise MissingInverse(f"{because} not proved yet")
     try:
         atom = spectral_atom(name, of, reading) if kind == "spectral" else Atom(name, kind, value(of, reading))
     except Rejected as error:
@@ -149,7 +153,7 @@ def check_scalar(
         raise Rejected(f"the rule {rule!r} proves equations, not {statement.relation}")
     checks = {
         "both": _check_both, "squeeze": _check_squeeze, "integral": _check_integral, "same argument": _check_argument,
-        **CHECKS,
+        **CHECKS, **PARAMETER,
     }  # fmt: skip
     checks[rule](statement, links, reading)
 
@@ -265,4 +269,5 @@ def _continuous(poly: Poly, variable: str, reading: Reading) -> bool:
         return {s for s in scalars_of(real.unfold(p)) if s != variable and real.varies(s, variable)}
 
     found = [real.atoms[s] for s in moving(poly)]
-    return all(a.kind in CONTINUOUS and not moving(a.of) and a.by is not None and not moving(a.by) for a in found)
+    odd = [a for a in found if not regular_logarithm(a.name, variable, reading)]
+    return all(a.kind in CONTINUOUS and not moving(a.of) and a.by is not None and not moving(a.by) for a in odd)

@@ -72,6 +72,9 @@ RULES: dict[Rule, str] = {
     "single": "one entry",
     "positive": "positive matrix",
     "resolvent": "strictly proper",
+    "parameter": "derivative under the integral",
+    "any sign": "for every real number",
+    "logarithms": "logarithm of a product",
 }
 SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 

@@ -17,6 +17,7 @@ from derive.theory import (
     spectrum_cross,
     spectrum_filter,
     spectrum_jensen,
+    spectrum_poisson,
     spectrum_poles,
     spectrum_roots,
     spectrum_special,
@@ -27,6 +28,7 @@ KEY, THEORY = "spectrum", "spectrum"
 PARTS = (
     spectrum_roots,
     spectrum_jensen,
+    spectrum_poisson,
     spectrum_filter,
     spectrum_bode,
     spectrum_poles,
