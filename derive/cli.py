@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -120,12 +121,24 @@ def tour(folder: Path) -> int:
 @click.argument("lectures", nargs=-1, required=True, metavar="LECTURE...")
 @click.option("-o", "path", required=True, type=click.Path(path_type=Path), help="File; .md, .html or .json.")
 @click.option("--to", "flavour", type=click.Choice(["gfm"]), help="Flavour of Markdown.")
-def notes(lectures: tuple[str, ...], path: Path, flavour: str | None) -> int:
+@click.option("--plant", metavar="FILE", help="Add a worked example: the plant in FILE, validated by every route.")
+def notes(lectures: tuple[str, ...], path: Path, flavour: str | None, plant: str | None) -> int:
     """Write the notes of each LECTURE (see `derive list`) to a file whose suffix chooses the format."""
     from derive.notes import write_notes
 
     with progress("deriving") as show:
-        return 0 if write_notes(lectures, path, flavour, show) else REFUTED
+        example = partial(example_of, plant, show) if plant else None
+        return 0 if write_notes(lectures, path, flavour, show, example) else REFUTED
+
+
+def example_of(path: str, show: Callable[[str], None]) -> Sequence[Any]:
+    """Return the worked example of the plant in a file, validated by every route."""
+    from derive.numeric.plant import load_plant
+    from derive.worked import worked_example
+    from lmi.validation import validate
+
+    plant = load_plant(path)
+    return worked_example(plant, validate(plant, progress=lambda route: show(f"validating: {route}")).as_dict())
 
 
 @cli.command()

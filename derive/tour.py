@@ -16,12 +16,12 @@ from derive.catalogue import DOCUMENTS
 from derive.derivation import Lecture
 from derive.document import lecture_to_json
 from derive.files import make_folder, write
+from derive.notes.handout import write_figures
 from derive.notes.html import html
 from derive.notes.markdown import markdown
 from derive.notes.model import (
     Block,
     Document,
-    Figure,
     Inline,
     Link,
     Note,
@@ -160,16 +160,6 @@ def write_page(folder: Path, name: str, page: Document) -> None:
     """Write a page as HTML, and as Markdown with its drawings in files."""
     write(folder / f"{name}.html", html(page))
     write(folder / f"{name}.md", markdown(page, write_figures(folder, name, page)))
-
-
-def write_figures(folder: Path, page_name: str, page: Document) -> list[str]:
-    """Write the drawings of a page as files for its Markdown; returns their names."""
-    figures = [block.svg for block in page.blocks if isinstance(block, Figure)]
-    make_folder(folder / "figures")
-    names = [f"figures/{page_name}-{i}.svg" for i in range(1, len(figures) + 1)]
-    for name, svg in zip(names, figures, strict=True):
-        write(folder / name, svg)
-    return names
 
 
 def bind(chapters: Sequence[Chapter], example: Sequence[Block]) -> Document:
