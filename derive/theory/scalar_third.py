@@ -276,8 +276,10 @@ def _derive_same(b: ScalarBuilder) -> None:
         "12": ("a1 of X", "x1", "only P11"),
         "13": ("a0 of X", "x0", "only P11", "only P12"),
     }
-    other = {"22": ("Riccati equation 12 of X",), "23": ("Riccati equation 13 of X",)}
-    other["33"] = "Riccati equation 23 of X", "only P22", "only P23"
+    other: dict[str, tuple[str, ...]] = {
+        "22": ("Riccati equation 12 of X",), "23": ("Riccati equation 13 of X",),
+        "33": ("Riccati equation 23 of X", "only P22", "only P23"),
+    }  # fmt: skip
     gains = ("K1", "K2", "K3", "P11", "P12", "P13")
     for k in ENTRIES:
         X, P = letters(t, "X" + k, "P" + k)
