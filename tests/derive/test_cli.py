@@ -194,6 +194,37 @@ def test_notes_as_json_are_verified(tmp_path):
         assert result.stdout.count("proved (kernel)") == len(keys)
 
 
+PLANT = """time = "continuous"
+A = [[0.5]]
+C = [[1.0]]
+W = [[1.0]]
+V = [[1.0]]
+"""
+
+
+@pytest.mark.parametrize("suffix", ["html", "md"])
+def test_notes_with_a_plant_end_with_its_worked_example(suffix, tmp_path):
+    plant, path = tmp_path / "mass.toml", tmp_path / f"n.{suffix}"
+    plant.write_text(PLANT, encoding="utf-8")
+    assert run("notes", "observer", "-o", path, "--plant", plant).exit_code == 0
+    text = path.read_text(encoding="utf-8")
+    assert "Worked example: mass" in text
+    assert "1.618034" in text  # P solves P + 1 - P^2 = 0
+    drawings = [p.name for p in sorted((tmp_path / "figures").iterdir())] if suffix == "md" else []
+    assert all(f"figures/{name}" in text for name in drawings)
+    assert bool(drawings) == (suffix == "md")
+
+
+def test_a_plant_needs_a_page_and_a_file(tmp_path):
+    plant = tmp_path / "mass.toml"
+    plant.write_text(PLANT, encoding="utf-8")
+    bad = run("notes", "observer", "-o", tmp_path / "n.json", "--plant", plant)
+    assert (bad.exit_code, "expected a file ending in" in one_line(bad)) == (2, True)
+    missing = run("notes", "observer", "-o", tmp_path / "n.html", "--plant", tmp_path / "none.toml")
+    assert (missing.exit_code, "none.toml" in one_line(missing)) == (2, True)
+    assert [p.name for p in tmp_path.iterdir()] == ["mass.toml"]
+
+
 def test_an_existing_file_is_replaced_and_keeps_no_trace_of_a_failure(tmp_path):
     path = tmp_path / "notes.md"
     path.write_text("old", encoding="utf-8")
