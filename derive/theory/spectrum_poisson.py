@@ -261,8 +261,9 @@ def _derive_antiderivative(b: ScalarBuilder) -> None:
         x = t.symbols[name]
         b.equal(f"|{name}| = {name}", Equation(Abs(x), "=", x), [f"|{name}| ≥ 0", f"{name} > 0"])
     for sign, k in SIDES:
-        _derive_tail(b, sign, k, sigma, w0)
-        _derive_tail(b, sign, k, a, c)
+        for name, re, im in ((f"k{sign}", sigma, w0), (f"u{sign} ρ", a, c)):
+            u = square(_shifted(w, im, k)) + square(re)
+            _squeeze(b, name, u, w, Neg(2 * im) if k < 0 else 2 * im, square(re) + square(im))
     for sign, k in SIDES:
         H, pairs = t.symbols[f"H{sign}"], [kernel(t, j) * Quotient(2 * a, near(t, a, c, -j * k)) for _, j in SIDES]
         b.state(f"rate of H{sign}", Equation(Rate(H, w), "=", pairs[0] + pairs[1]), "partial fractions", [f"H{sign}"])
@@ -278,13 +279,6 @@ def _derive_antiderivative(b: ScalarBuilder) -> None:
     g, value = rates(t, a)
     G = t.symbols["H-"] + t.symbols["H+"] - Quotient(FOUR, a * sigma) * _turns(t)
     _by_antiderivative(b, "rate", G, g, value, ["rate of H-", "rate of H+", "|σ0| = σ0"])
-
-
-def _derive_tail(b: ScalarBuilder, sign: str, k: int, a: Term, c: Term) -> None:
-    w = b.theory.symbols["ω"]
-    ratio = Log(square(_shifted(w, c, k)) + square(a)) - Log(square(w))
-    name = f"logarithm ({sign}β)"
-    b.linked(f"{name} {a}", Equation(Limit(ratio, w, Infinity()), "=", ZERO), "instance", "as for any root", [name])
 
 
 def _by_antiderivative(b: ScalarBuilder, name: str, G: Term, g: Term, value: Term, using: Sequence[str]) -> None:
@@ -332,23 +326,21 @@ def _derive_start(b: ScalarBuilder) -> None:
     r, c, sigma, w0, w = (t.symbols[k] for k in ("r", "β", "σ0", "ω0", "ω"))
     b.say("and vanishes far from the axis:")
     for sign, k in SIDES:
-        _squeeze(b, f"u{sign}", near(t, r, c, k), ZERO, square(_shifted(w, c, k)))
-        _squeeze(b, f"m{sign}", far(t, r, c, k), 2 * sigma, square(sigma) + square(_shifted(w0, c, k)))
+        _squeeze(b, f"u{sign} r", near(t, r, c, k), r, ZERO, square(_shifted(w, c, k)))
+        _squeeze(b, f"m{sign} r", far(t, r, c, k), r, 2 * sigma, square(sigma) + square(_shifted(w0, c, k)))
     for name, body in zip(("integrand", "value"), decaying(t, r), strict=True):
         b.state(f"the {name} vanishes", Equation(Limit(body, r, Infinity()), "=", ZERO), "term by term")
 
 
-def _squeeze(b: ScalarBuilder, name: str, u: Term, slope: Term, size: Term) -> None:
-    """Derive ln u - ln r^2 -> 0 for u = r^2 + slope r + size."""
-    r = b.theory.symbols["r"]
-    ratio, bounds = Log(u) - Log(square(r)), [f"{name} above", f"{name} below"]
-    above = Quotient(size, square(r)) if slope == ZERO else Quotient(slope, r) + Quotient(size, square(r))
-    below = Neg(Quotient(size, u)) if slope == ZERO else Neg(Quotient(slope * r + size, u))
-    b.sign(bounds[0], Equation(above, "≥", ratio), "ln x ≤ x - 1", [f"ln {name} r - ln r^2 ≤"])
-    b.sign(bounds[1], Equation(below, "≥", Neg(Log(u)) + Log(square(r))), "ln x ≤ x - 1", [f"ln r^2 - ln {name} r ≤"])
-    b.linked(
-        f"ln {name} vanishes", Equation(Limit(ratio, r, Infinity()), "=", ZERO), "squeeze", "both bounds vanish", bounds
-    )
+def _squeeze(b: ScalarBuilder, name: str, u: Term, x: Symbol, slope: Term, size: Term) -> None:
+    """Derive ln u - ln x^2 -> 0 for u = x^2 + slope x + size."""
+    ratio, bounds = Log(u) - Log(square(x)), [f"ln {name} from above", f"ln {name} from below"]
+    above, below = (Quotient(size, y) if slope == ZERO else Quotient(slope * x + size, y) for y in (square(x), u))
+    facts = [f"ln {name} - ln {x.name}^2 ≤", f"ln {x.name}^2 - ln {name} ≤"]
+    b.sign(bounds[0], Equation(above, "≥", ratio), "ln x ≤ x - 1", facts[:1])
+    b.sign(bounds[1], Equation(Neg(below), "≥", Neg(Log(u)) + Log(square(x))), "ln x ≤ x - 1", facts[1:])
+    vanishing = Equation(Limit(ratio, x, Infinity()), "=", ZERO)
+    b.linked(f"ln {name} far out", vanishing, "squeeze", "both bounds vanish", bounds)
 
 
 def _derive_lemma(b: ScalarBuilder) -> None:
