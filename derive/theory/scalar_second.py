@@ -115,15 +115,13 @@ def _declare_solution(t: Theory) -> None:
     X11, X12, X22 = (t.scalar(f"X{k}", Glyph("X", sub=k), meaning=f"entry {k} of any solution") for k in ENTRIES)
     for k, entry in zip(ENTRIES, equations(t.symbols, X11, X12, X22), strict=True):
         t.assume(f"Riccati equation {k} of X", entry, "=", text=f"X is a solution, entry {k}", case=True)
-    x0, x1 = _loop(t.symbols, X11, X12)
-    t.assume("X leaves a0 >= 0", x0, "≥", text="its closed loop has no root in the right half-plane", case=True)
-    t.assume("X leaves a1 >= 0", x1, "≥", text="its closed loop has no root in the right half-plane", case=True)
-
-
-def _loop(s: dict[str, Symbol], X11: Term, X12: Term) -> tuple[Term, Term]:
-    """Return the coefficients of det(sI - A + XC'C/V)."""
-    b0, b1, V = (s[k] for k in ("b0", "b1", "V"))
-    return b0 + Quotient(X12, V) + b1 * Quotient(X11, V), Quotient(X11, V) + b1
+    b0, b1, V = (t.symbols[k] for k in ("b0", "b1", "V"))
+    loop = b0 + Quotient(X12, V) + b1 * Quotient(X11, V), Quotient(X11, V) + b1
+    for i, coefficient in enumerate(loop):
+        name, text = f"X leaves a{i}", "its closed loop has no root in the right half-plane"
+        x = t.scalar(name, Glyph("x", sub=str(i)), meaning="coefficient of the closed loop of X")
+        t.define(name, x, coefficient)
+        t.assume(f"{name} >= 0", x, "≥", text=text, case=True)
 
 
 # ------------------------------------------------------------------------------------------------ derivation
@@ -284,29 +282,29 @@ def _derive_value(b: ScalarBuilder) -> None:
     V, b1, f0, f1, P11, P12, P22 = (s[k] for k in ("V", "b1", "f0", "f1", "P11", "P12", "P22"))
     X11, X12, X22 = (s[f"X{k}"] for k in ENTRIES)
     c0, c2 = _coefficients(s)
-    x0, x1 = _loop(s, X11, X12)
+    x0, x1, z, b0 = (s[k] for k in ("X leaves a0", "X leaves a1", "polynomial s", "b0"))
     b.say("Conversely, let X be any solution of the Riccati equation:")
     names = [f"Riccati equation {k} of X" for k in ENTRIES]
     b.given(*names)
-    z, b0 = s["polynomial s"], s["b0"]
+    b.given("X leaves a0", "X leaves a1")
     loop = _characteristic(z, b0, b1, Quotient(X11, V), Quotient(X12, V), x0, x1)
     b.state("closed loop of X", loop, "the determinant")
-    b.state("factor from X, c0", Equation(square(x0), "=", c0), "eliminate X22", names)
-    b.state("factor from X, c2", Equation(square(x1) - 2 * x0, "=", c2), "entry 11", names)
+    made = [*names, "X leaves a0", "X leaves a1"]
+    b.state("factor from X, c0", Equation(square(x0), "=", c0), "eliminate X22", made)
+    b.state("factor from X, c2", Equation(square(x1) - 2 * x0, "=", c2), "entry 11", made)
     b.say("Only one leaves the closed loop without roots in the right half-plane, and CXC'/V is the difference of two")
     b.say("coefficients, ", f1, " of the factor and ", b1, " of the plant, whether the plant is stable or not:")
     b.given("X leaves a0 >= 0", "X leaves a1 >= 0")
-    b.equal(
-        "a0 of X", Equation(x0, "=", f0), ["X leaves a0 >= 0", "root of plant c0 ≥ 0"], identities=["factor from X, c0"]
-    )
-    b.equal(
-        "a1 of X", Equation(x1, "=", f1), ["X leaves a1 >= 0", "root of plant c2 + 2 a0 ≥ 0"],
-        identities=["factor from X, c2", "a0 of X"],
-    )  # fmt: skip
-    b.state("value of order two", Equation(Quotient(X11, V), "=", f1 - b1), "CXC'/V", ["a1 of X"])
-    known = ["value of order two", "a0 of X", *names]
-    for X, P in ((X11, P11), (X12, P12), (X22, P22)):
-        b.state(f"only {P.name}", Equation(X, "=", P), "insert the factor", known)
+    known = ["factor from X, c0", "root of plant c0", "f0"]
+    equal(b, "a0 of X", Equation(x0, "=", f0), ["X leaves a0 >= 0", "root of plant c0 ≥ 0"], known)
+    known = ["factor from X, c2", "a0 of X", "root of plant c2 + 2 a0", "f1"]
+    equal(b, "a1 of X", Equation(x1, "=", f1), ["X leaves a1 >= 0", "root of plant c2 + 2 a0 ≥ 0"], known)
+    b.state("value of order two", Equation(Quotient(X11, V), "=", f1 - b1), "CXC'/V", ["a1 of X", "X leaves a1"])
+    b.state("only P11", Equation(X11, "=", P11), "insert the factor", ["value of order two", "P11"])
+    known = ["a0 of X", "a1 of X", "only P11", "X leaves a0", "X leaves a1", "P11", "P12"]
+    b.state("only P12", Equation(X12, "=", P12), "insert the factor", known)
+    known = ["Riccati equation 12 of X", "Riccati equation 12 of order two", "only P11", "only P12"]
+    b.state("only P22", Equation(X22, "=", P22), "entry 12", known)
     b.state("value of P11", Equation(Quotient(P11, V), "=", f1 - b1), "the covariance itself")
 
 
