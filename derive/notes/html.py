@@ -138,10 +138,9 @@ def _row(row: Row) -> str:
     rests = [row.rule] * bool(row.rule) + [f"from {inline(row.uses)}"] * bool(row.uses)
     uses = f' <span class="uses">{", ".join(rests)}</span>' if rests else ""
     uses += f" <b>{escape(row.message)}</b>" if row.message else ""
-    reason = f"<span>{inline(row.reason)}</span>" if row.reason else ""
     place = "aside" if row.badge in ("definition", "hypothesis") else "why"
-    why = f'<div class="{place}">{badge(row.badge)} {reason}{uses}</div>' if row.badge else ""
-    return f'<div class="row" id="{row.id}"><span class="l">{lhs}</span><span class="r">{rhs}</span>{number}{why}</div>'
+    why = f'<div class="{place}">{badge(row.badge)} {inline(row.reason)}{uses}</div>' if row.badge else ""
+    return f'<div class="row" id="{row.id}"><i>{lhs}</i><i>{rhs}</i>{number}{why}</div>'
 
 
 def _breakable(box: Box) -> str:
@@ -192,4 +191,4 @@ def inline(text: Inline) -> str:
                 out.append(_link(part))
             case Term() | Equation():
                 out.append(_breakable(layout(part)))
-    return PUNCTUATED.sub(r'<span class="nb">\1</span>', "".join(out))
+    return PUNCTUATED.sub(r"<i>\1</i>", "".join(out))

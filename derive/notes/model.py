@@ -6,8 +6,9 @@ A badge comes from the replay of a step and from nothing else: ``document_of`` t
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -76,6 +77,7 @@ RULES: dict[Rule, str] = {
     "any sign": "for every real number",
     "logarithms": "logarithm of a product",
 }
+ANCHORS = {" ": "-", "≠": "ne", "=": "eq", ">": "gt", "<": "lt", "≥": "ge", "≤": "le", "(": "_", ")": "_", ",": "_"}
 SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}
 
 
@@ -191,9 +193,9 @@ class Document:
 
 
 def slug(*parts: str) -> str:
-    """Return an anchor made of ASCII letters, digits and hyphens; what has no such letter is spelled by its code."""
-    text = "-".join(parts)
-    return re.sub(r"[^A-Za-z0-9.-]+", lambda m: "-" if m[0].isspace() else "".join(f"_{ord(c):x}" for c in m[0]), text)
+    """Return an anchor of ASCII letters, digits, points, - and _; signs are spelled by a name, or else by their code."""
+    spelled = (c if re.match("[A-Za-z0-9.-]", c) else ANCHORS.get(c, f"_{ord(c):x}") for c in "-".join(parts))
+    return "".join(spelled)
 
 
 def visible(number: str) -> str:
@@ -211,7 +213,20 @@ def document_of(lecture: Lecture, outcomes: Sequence[Outcome]) -> Document:
         blocks += layout.block(item)
     sources = "; ".join(SOURCES[s] for s in lecture.sources if s in SOURCES)
     proved = sum(layout.accepted(s) for s in lecture.steps)
-    return Document(lecture.title, (sources,), tuple(blocks), proved, len(lecture.steps))
+    return Document(lecture.title, (sources,), tuple(_named_once(blocks)), proved, len(lecture.steps))
+
+
+def _named_once(blocks: Sequence[Block]) -> Iterator[Block]:
+    """Number the anchors of what is displayed again; links lead to where it stands first."""
+    seen = Counter[str]()
+    for block in blocks:
+        if isinstance(block, Display):
+            rows: list[Row] = []
+            for row in block.rows:
+                seen[row.id] += 1
+                rows.append(replace(row, id=f"{row.id}-{seen[row.id]}") if seen[row.id] > 1 else row)
+            block = Display(tuple(rows))
+        yield block
 
 
 def join(title: str, subtitle: Inline, documents: Sequence[Document], extra: Sequence[Block] = ()) -> Document:

@@ -74,6 +74,8 @@ def test_a_page_is_self_contained_and_small(written, name):
     tags = Page(text).tags
     assert not {"link", "iframe", "object", "embed", "img", "base"} & set(tags)
     assert tags.count("script") == (name == "sliders")
+    names = re.findall(r' id="([^"]+)"', text)
+    assert len(names) == len(set(names))
     assert not re.search(r"url\((?!data:|#|\"?#)|@import", text)
     assert len(text.encode()) < LIMIT
     assert tags.count("math") > (20 if name == "sliders" else 200)

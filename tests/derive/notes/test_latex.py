@@ -90,6 +90,8 @@ def test_every_equation_is_printed_in_order_and_balanced(key):
             symbols = [n for n in walk(side) if isinstance(n, Symbol)]
             named = [c for n in symbols for c in (n.glyph.letter, *(n.show_args or ())) if re.fullmatch("[A-Z]", c)]
             if not any(type(n).__name__ in BOUNDED for n in walk(side)):
-                bare = re.sub(r"\\operatorname\{\w+\}|\\[A-Za-z]+|\{bmatrix\}|_\{[^{}]*\}|_\w|\\mathrm\{d\}", " ", latex(side))
+                bare = re.sub(
+                    r"\\operatorname\{\w+\}|\\[A-Za-z]+|\{bmatrix\}|_\{[^{}]*\}|_\w|\\mathrm\{d\}", " ", latex(side)
+                )
                 letters = [c for c in re.findall("[A-Z]", bare) if c not in "IE" or c in named]
                 assert letters == named, text
