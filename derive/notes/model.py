@@ -193,7 +193,7 @@ class Document:
 
 
 def slug(*parts: str) -> str:
-    """Return an anchor of ASCII letters, digits, points, - and _; signs are spelled by a name, or else by their code."""
+    """Return an anchor of ASCII letters, digits and . - _; signs are spelled by a name, or else by their code."""
     spelled = (c if re.match("[A-Za-z0-9.-]", c) else ANCHORS.get(c, f"_{ord(c):x}") for c in "-".join(parts))
     return "".join(spelled)
 
