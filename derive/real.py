@@ -28,7 +28,7 @@ RESERVED = frozenset({FREQUENCY, TIME, COMPLEX, UNIT, CIRCLE})  # scalars to whi
 MATRIX = ("det", "trace")  # atoms of a matrix polynomial
 EVERYWHERE = ("defined", "root", "reciprocal", "absolute", "part", "exp", "log", "arctan", "sum")  # functions of ``of``
 LOGARITHMS = ("log modulus", "log value")  # atoms of a complex function of a real variable
-LARGEST, LONGEST = 100_000, 400  # products that one multiplication writes, and the factors of one product
+LARGEST, LONGEST = 2_000, 400  # products that one multiplication writes, and the factors of one product
 
 
 @dataclass(frozen=True)

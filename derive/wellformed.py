@@ -15,11 +15,13 @@ from derive import kernel
 from derive.context import Theory
 from derive.derivation import Proof
 from derive.errors import InputError
+from derive.functions import Power, Quotient, Rate
 from derive.kernel import Poly
-from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term
+from derive.terms import Block, Dot, Image, Inverse, Product, Sum, Term, walk
 
 EXPANSION = 2_000  # products that one statement may expand to
 LENGTH = 400  # factors of one product
+FACTORS = 1_000  # facts and squares in one certificate of sign
 WORK = 1_000_000  # letters that one certificate of positivity, comparison or uniqueness may expand to
 TIME = re.compile(r"[A-Za-zα-ω][0-9]{0,3}")  # what prints as one variable
 
@@ -108,6 +110,8 @@ def check_work(proof: Proof) -> None:
         work += len(matrix.terms) * _work([matrix], [claim])
     if proof.uniqueness:
         work += _work([proof.uniqueness.left, proof.uniqueness.right], [proof.uniqueness.claim])
+    if proof.sign and sum(len(p.facts) + 2 * len(p.squares) for p in proof.sign.products) > FACTORS:
+        raise InputError(f"expected a certificate of sign of at most {FACTORS} factors, got more")
     if work > WORK:
         raise InputError(f"expected a certificate of at most {WORK} letters, got more; prove it in smaller steps")
 
@@ -129,9 +133,16 @@ def expansion(term: Term, theory: Theory) -> tuple[int, int]:
     match term:
         case Product():
             count, length = reduce(mul, (c for c, _ in below), 1), sum(n for _, n in below)
+        case Power(_, exponent) if exponent > LENGTH:
+            raise InputError(f"expected an exponent of at most {LENGTH}, got more")
+        case Power(_, exponent):
+            count, length = count ** max(exponent, 1), length * max(exponent, 1)
+        case Quotient(_, bottom):
+            nested = any(isinstance(node, Quotient) for node in walk(bottom))  # its reciprocal is sought in two ways
+            count, length = below[0][0] * (2 * below[1][0] if nested else 1), below[0][1] + below[1][1]
         case Inverse():
             count, length = 1, 1
-        case Dot():
+        case Dot() | Rate():
             count, length = count * length * 8, length + 8
         case Image(name):
             widest = max((expansion(image, theory)[0] for image in theory.maps[name].values()), default=1)

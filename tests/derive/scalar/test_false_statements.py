@@ -5,20 +5,23 @@ Each is the smallest that one gap would let through; the theories are satisfiabl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 
 import pytest
 
 from derive.context import Theory
 from derive.derivation import Proof, Step, verify
-from derive.functions import PI, Abs, Arctan, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Start, value
+from derive.errors import InputError
+from derive.functions import PI, Abs, Arctan, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Root, Start, value
 from derive.kernel import ANY, Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import Sign, SignProduct, constant, scalar
 from derive.scalars import _continuous
+from derive.serialise import Reader, to_json
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, Total
-from derive.terms import Block, Equation, Identity, Neg, Number, Product, Symbol, Term, Trace, Zero
+from derive.terms import Block, Equation, Identity, Neg, Number, Product, Sum, Symbol, Term, Trace, Zero
+from derive.wellformed import check_work
 
 ZERO, ONE, TWO = Zero("", ""), Number(Fraction(1)), Number(Fraction(2))
 NOTHING = Poly({}, ANY, ANY)
@@ -499,3 +502,42 @@ def test_an_implicit_function_need_not_be_real():
     log = Log(Modulus(At(Det(L), s, Product((j, w)))))
     t.atom("spectral", log, name="ln")
     rejected(t, same(log, log))
+
+
+# ------------------------------------------------------------------------------------------------ size
+def nested(depth: int, wrap: Callable[[Term], Term], term: Term) -> Term:
+    for _ in range(depth):
+        term = wrap(term)
+    return term
+
+
+@pytest.mark.parametrize(
+    "term",
+    [
+        Power(TWO, 10**9),
+        nested(5, lambda x: Power(x, 400), TWO),
+        Power(Sum((Symbol("x", scalar=True), ONE)), 50),
+        nested(60, lambda x: Quotient(ONE, x), Symbol("x", scalar=True)),
+        nested(30, lambda x: Quotient(Quotient(ONE, x), TWO), Symbol("x", scalar=True)),
+        nested(20, lambda x: Rate(x, Symbol("x", scalar=True)), Power(Symbol("x", scalar=True), 20)),
+    ],
+)
+def test_a_file_does_not_ask_for_endless_work(term: Term):
+    t, (x,) = theory("x")
+    with pytest.raises(InputError, match="at most"):
+        Reader(t).equation(to_json(Equation(term, "=", x), t))
+
+
+def test_a_product_of_facts_is_bounded():
+    """Squares of a long sum, and definitions that are written out, stay small, whoever asks for them."""
+    t, symbols = theory(*"abcdefgh")
+    total = Sum(tuple(symbols))
+    t.define("y", t.scalar("y"), total)
+    t.define("z", t.scalar("z"), Power(t.symbols["y"], 40))
+    rejected(t, same(Power(total, 30), ZERO))
+    rejected(t, same(Root(t.symbols["z"]), ZERO))
+    poly = value(total, t.reading())
+    many = SignProduct(Fraction(1), (), (poly,) * 30)
+    rejected(t, sign(Equation(total, "≥", ZERO), poly, [many]))
+    with pytest.raises(InputError, match="certificate of sign"):
+        check_work(Proof(sign=Sign(poly, "≥", (many,) * 20, ())))
