@@ -478,6 +478,19 @@ def _spectral(term: Term) -> Box:
             raise TypeError(f"no layout for {type(term).__name__}")
 
 
+def _written(point: Term) -> str:
+    """Write a point of the complex plane as a label."""
+    match point:
+        case Symbol(name=name):
+            return name
+        case Product(factors):
+            return "".join(map(_written, factors))
+        case Sum(addends):
+            return "+".join(map(_written, addends))
+        case _:
+            raise TypeError(f"no label for {type(point).__name__}")
+
+
 def _placed(term: At) -> Term:
     """Write a function at a point: the point for its variable; a spectrum at jω is one at ω."""
 
@@ -485,7 +498,7 @@ def _placed(term: At) -> Term:
         if part == term.symbol:
             return term.point
         if isinstance(part, Symbol):
-            name = term.point.name if isinstance(term.point, Symbol) else "ω" if part.glyph.letter == "Φ" else "jω"
+            name = "ω" if part.glyph.letter == "Φ" and isinstance(term.point, Product) else _written(term.point)
             shown = part.show_args and tuple(name if a == term.symbol.name else a for a in part.show_args)
             return replace(part, show_args=shown)
         if isinstance(part, Term):
