@@ -1,9 +1,11 @@
-"""Poisson's formula in the half plane: numbers against quadrature, false statements, and each hypothesis of the rules."""
+"""Poisson's formula in the half plane: numbers against quadrature, false statements, each hypothesis of the rules."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
+from itertools import pairwise
 from math import atan, inf, log, pi
 
 import numpy as np
@@ -18,11 +20,11 @@ from derive.parameter import check_any_sign, check_logarithms, check_parameter, 
 from derive.real import scalar
 from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Total
 from derive.terms import Equation, Identity, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero
-from derive.theory import spectrum
-from derive.theory import spectrum_poisson as poisson
+from derive.theory import spectrum, spectrum_half_plane, spectrum_poisson
+from derive.theory.spectrum_roots import on_axis
 from tests.derive.theory.mutants import mutants
 
-ZERO, ONE = Zero("", ""), Number(1)
+ZERO, ONE = Zero("", ""), Number(Fraction(1))
 NUMBERED = "Poisson-Jensen formula"
 LEMMAS = ("decaying lemma", "lemma for r > 0", "Poisson lemma")
 MIRROR = {"σ0": 0.7, "ω0": 0.4, "r": 0.7, "α": -0.7, "β": 0.4}
@@ -85,7 +87,7 @@ def integral(f, whole: bool) -> float:
     g = lambda a: f(np.tan(a)) / np.cos(a) ** 2  # noqa: E731
     marks = [-atan(2.0), -atan(0.9), -atan(0.4), atan(0.4), atan(0.9), atan(2.0)]
     ends = [-pi / 2, *marks, pi / 2] if whole else [0.0, *(m for m in marks if m > 0), pi / 2]
-    return sum(quad(g, a, b, limit=200, epsabs=1e-11)[0] for a, b in zip(ends, ends[1:], strict=False))
+    return sum(quad(g, a, b, limit=200, epsabs=1e-11)[0] for a, b in pairwise(ends))
 
 
 PLACES = (
@@ -243,9 +245,10 @@ def test_the_links_must_be_about_one_function():
 def test_both_sides_must_agree_at_the_same_end():
     statement, links, reading = given()
     f, v = links[4], links[5]
-    assert isinstance(f.lhs, Limit) and isinstance(v.lhs, Limit)
-    nearby = Equation(replace(v.lhs, point=ZERO), "=", ZERO)
-    for ends in ((f, nearby), (f, replace(v, rhs=PI)), (replace(f, rhs=ONE), v), (Equation(replace(f.lhs, point=ZERO), "=", ZERO), v)):  # fmt: skip
+    assert isinstance(f.lhs, Limit)
+    assert isinstance(v.lhs, Limit)
+    nearby, early = (Equation(replace(e, point=ZERO), "=", ZERO) for e in (v.lhs, f.lhs))
+    for ends in ((f, nearby), (f, replace(v, rhs=PI)), (replace(f, rhs=ONE), v), (early, v)):
         refused(check_parameter, statement, [*links[:4], *ends], reading)
     r = links[1].lhs.symbol  # type: ignore[attr-defined]
     moving = (replace(f, rhs=r), replace(v, rhs=r))
@@ -300,7 +303,8 @@ def test_any_sign_needs_every_link_and_an_arbitrary_parameter():
         other = renamed([statement], t.symbols["α"], t.symbols[name])[0]
         refused(check_any_sign, other, links, reading)
     refused(check_any_sign, statement, [links[0], links[1], Equation(links[2].lhs, "≠", ZERO)], reading)
-    refused(check_any_sign, Equation(statement.lhs, "=", swap(statement.rhs, t.symbols["β"], t.symbols["α"])), links, reading)  # fmt: skip
+    twice = swap(statement.rhs, t.symbols["β"], t.symbols["α"])
+    refused(check_any_sign, Equation(statement.lhs, "=", twice), links, reading)
 
 
 def test_any_sign_needs_an_even_integrand():
@@ -319,7 +323,7 @@ def test_any_sign_needs_an_even_integrand():
         check_any_sign(statement, links, t.reading())
 
 
-# ------------------------------------------------------------------------------------------------ what may be assumed of r
+# ------------------------------------------------------------------------------------------------ hypotheses on r
 def running():
     t = Theory("running", "A theory with a running parameter")
     w, r, c = t.scalar("ω"), t.run("r"), t.scalar("c")
@@ -371,7 +375,7 @@ def test_an_instance_does_not_move_the_exceptions_with_the_parameter():
 
 def smooth_case(kind):
     """The integrand 1 - or what else depends on r in a way whose derivative is not what it seems."""
-    t, w, r, c = running()
+    t, w, r, _ = running()
     if kind == "modulus":
         t.atom("absolute", r - w, name="|r - ω|")
         return t, w, r, Abs(r - w)
@@ -420,8 +424,8 @@ def test_a_logarithm_is_continuous_where_its_argument_stays_positive():
 def test_an_integral_over_the_whole_axis_is_that_of_the_even_part():
     _, reading, _ = stages()[NUMBERED]
     t = spectrum.theory()
-    both = value(poisson.half(t, poisson.kernels(t) * poisson.on_axis(t, t.symbols["f"])), reading)
-    assert value(poisson.poisson(t), reading) == both * scalar("1/π")
+    both = value(spectrum_poisson.half(t, spectrum_poisson.kernels(t) * on_axis(t, t.symbols["f"])), reading)
+    assert value(spectrum_half_plane.poisson(t), reading) == both * scalar("1/π")
 
 
 def test_a_function_at_a_point_depends_on_what_the_point_is():
@@ -433,7 +437,7 @@ def test_a_function_at_a_point_depends_on_what_the_point_is():
     body = Log(Modulus(At(s + ONE, s, Sum((x, Product((j, y)))))))
     t.atom("spectral", body, name="ln|f|")
     real = t.reading().real
-    assert real.varies("ln|f|", "ω") and real.varies("ln|f|", "y") and not real.varies("ln|f|", "s")
+    assert [v for v in ("ω", "y", "s") if real.varies("ln|f|", v)] == ["ω", "y"]
     for bad in (Sum((w, Product((j, y)))), Sum((x, Product((j, w)))), Sum((s, Product((j, y))))):
         with pytest.raises(Rejected):
             value(Log(Modulus(At(s + ONE, s, bad))), t.reading())
