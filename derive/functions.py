@@ -337,7 +337,7 @@ def _variable(symbol: Symbol, point: Term) -> str:
         case Sum((Symbol(scalar=True, name=x), Product((Symbol() as j, Symbol(scalar=True, name=y))))) if (
             j.name == AXIS[0]
         ):
-            if {x, y} & {COMPLEX, *AXIS}:
+            if {x, y} & {COMPLEX, *AXIS} or " " in x + y:
                 raise Rejected("a point of the plane has a real and an imaginary part that stay what they are")
             return f"{x} {y}"
         case _:

@@ -108,7 +108,8 @@ def check_any_sign(statement: Equation, links: Links, reading: Reading) -> None:
     if a.name in reading.real.generic:
         raise Rejected(f"some values of {a.name} are excepted")
     for side in (F, V):
-        value(side, reading)
+        if any(reading.real.varies(s, r.name) for s in scalars_of(value(side, reading))):
+            raise Rejected(f"{r.name} is left in a symbol that stands for it")
     value(statement.lhs, reading)
 
 

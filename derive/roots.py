@@ -42,6 +42,8 @@ def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
     bound |= {n.index.name for n in nodes if isinstance(n, (Total, Roots))}
     exempt = reading.real.running - reading.real.generic  # exceptions must not move with a running parameter
     bound |= {FREQUENCY, COMPLEX, TIME, *exempt} if reading.real.generic else set()
+    used = {n.name for n in nodes if isinstance(n, Symbol)}
+    bound |= {v for v in reading.real.generic if any(reading.real.varies(name, v) for name in used)}
     if len(names) != len(images) or bound & names:
         raise Rejected("a parameter has two images, or is a variable of the step")
     for image in images.values():

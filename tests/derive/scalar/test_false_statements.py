@@ -16,6 +16,7 @@ from derive.errors import InputError
 from derive.functions import PI, Abs, Arctan, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Root, Start, value
 from derive.kernel import ANY, Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
+from derive.parameter import check_any_sign
 from derive.real import Sign, SignProduct, constant, scalar
 from derive.scalars import _continuous
 from derive.serialise import Reader, to_json
@@ -502,6 +503,49 @@ def test_an_implicit_function_need_not_be_real():
     log = Log(Modulus(At(Det(L), s, Product((j, w)))))
     t.atom("spectral", log, name="ln")
     rejected(t, same(log, log))
+
+
+# ------------------------------------------------------------------------------------------------ running parameters
+def test_a_symbol_that_stands_for_the_running_parameter():
+    """d is r²: the integral of k (r² - d) is 0 for all r, that of k (α² - d) is not."""
+    t, (w, d, k) = theory("ω", "d", "k")
+    t.assume("ω > 0", w, ">")
+    a, r = t.parameter("α"), t.run("r")
+    t.define("d", d, Power(r, 2))
+    gaps = [k * (Power(x, 2) - d) for x in (r, a)]
+    for n, body in zip("ra", gaps, strict=True):
+        t.atom("improper", body, name=f"integral {n}")
+    halves = [Definite(body, w, ZERO, Infinity()) for body in gaps]
+    reading = t.reading()
+    with pytest.raises(Rejected, match="stands for it"):
+        check_any_sign(
+            Equation(halves[1], "=", ZERO),
+            [Equation(halves[0], "=", ZERO), Equation(Rate(gaps[0], r), "=", ZERO), Equation(ZERO, "≥", ZERO)],
+            reading,
+        )
+
+
+def test_an_exception_does_not_follow_a_running_parameter():
+    """(ρ - α)² > 0 but for one ρ, which is ρ itself where α = ρ."""
+    t, _ = theory()
+    a, r = t.parameter("α"), t.run("ρ")
+    t.generic("gap", r - a, ZERO, r)
+    gap = scalar("ρ") - scalar("α")
+    lemma = sign(
+        Equation(Power(r - a, 2) + Power(ZERO, 2), ">", ZERO), gap * gap,
+        [SignProduct(Fraction(1), ("gap",)), SignProduct(Fraction(1), ("¬",))], name="lemma",
+    )  # fmt: skip
+    accepted(t, lemma)
+    rejected(t, lemma, linked(Equation(Power(r - r, 2) + Power(ZERO, 2), ">", ZERO), "instance", "lemma"))
+
+
+def test_a_point_with_an_index_is_no_constant():
+    t, _, i, m = family()
+    s, j = t.symbols["s"], t.scalar("j")
+    point = Sum((t.symbols["Re λ"], Product((j, t.symbols["Im λ"]))))
+    log = Log(Modulus(At(s, s, point)))
+    t.atom("spectral", log, name="ln|λ|")
+    rejected(t, same(Total(log, i, m), m * log))
 
 
 # ------------------------------------------------------------------------------------------------ size
