@@ -7,6 +7,7 @@ from functools import cache
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 from derive.errors import InputError
 
@@ -30,20 +31,27 @@ def italic(char: str) -> str:
     return {"ϵ": "𝜖", "ϑ": "𝜗", "ϕ": "𝜙", "ϱ": "𝜚"}.get(char, char)
 
 
-def embedded(text: str, letters: str) -> str:
-    """Return a ``data:`` address of the font with the characters of a text, the italics of letters, and brackets."""
-    characters = frozenset(text) | frozenset(map(italic, letters)) | frozenset(STRETCHY)
-    return "data:font/woff2;base64," + b64encode(_subset(characters)).decode("ascii")
+def embedded(text: str, letters: str, formulas: str | None = None) -> str:
+    """Return a ``data:`` address of the font with the characters of a text, the italics of letters, and brackets.
+
+    ``formulas`` are the characters that may stand in an index or exponent, beside the italics; None is all of them.
+    Only those get the shapes for small sizes, which are half of the font.
+    """
+    italics = frozenset(map(italic, letters))
+    characters = frozenset(text) | italics | frozenset(STRETCHY)
+    small = characters if formulas is None else frozenset(formulas) | italics
+    return "data:font/woff2;base64," + b64encode(_subset(characters, small)).decode("ascii")
 
 
 @cache
-def _subset(characters: frozenset[str]) -> bytes:
+def _subset(characters: frozenset[str], small: frozenset[str]) -> bytes:
     from fontTools.subset import Options, Subsetter
     from fontTools.ttLib import TTFont
 
     options = Options(flavor="woff2", layout_features=FEATURES, hinting=False, desubroutinize=True, notdef_outline=True)
     options.drop_tables += ["DSIG"]
     font = TTFont(font_file(), recalcTimestamp=False)
+    _keep_small(font, small)
     subsetter = Subsetter(options)
     subsetter.populate(unicodes=sorted(map(ord, characters)))
     subsetter.subset(font)
@@ -51,6 +59,19 @@ def _subset(characters: frozenset[str]) -> bytes:
     out = BytesIO()
     font.save(out)
     return out.getvalue()
+
+
+def _keep_small(font: Any, characters: frozenset[str]) -> None:
+    """Drop the shapes for indices and exponents (feature ssty) of all other characters."""
+    kept = {glyph for code, glyph in font.getBestCmap().items() if chr(code) in characters}
+    substitutions = font["GSUB"].table
+    lookups = {
+        i for f in substitutions.FeatureList.FeatureRecord if f.FeatureTag == "ssty" for i in f.Feature.LookupListIndex
+    }
+    for table in (t for i in lookups for t in substitutions.LookupList.Lookup[i].SubTable):
+        shapes = getattr(table, "ExtSubTable", table).alternates
+        for glyph in set(shapes) - kept:
+            del shapes[glyph]
 
 
 def font_file() -> Path:

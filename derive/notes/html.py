@@ -54,10 +54,18 @@ def whole_page(
         font="{font}",
         script="{script}",
     )
-    shown = unescape(re.sub(r"<[^>]*>", "", re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)))
-    letters = "".join(unescape(t) for t in re.findall(r"<mi>(.)</mi>", page))
+    shown, letters, formulas = _characters(page)
     page = _outlines_once(page).replace("{script}", f"<script>\n{script}</script>\n" if script else "")
-    return page.replace("{style}", resource("style.css") + style).replace("{font}", embedded(shown, letters))
+    return page.replace("{style}", resource("style.css") + style).replace("{font}", embedded(shown, letters, formulas))
+
+
+def _characters(page: str) -> tuple[str, str, str]:
+    """Return the text of a page, the letters that its formulas show in italics, and the rest of its formulas."""
+    text = re.sub(r"<svg.*?</svg>", "", page, flags=re.DOTALL)
+    letters = "".join(unescape(t) for t in re.findall(r"<mi>(.)</mi>", text))
+    formulas = re.sub(r"<mi>.</mi>", "", "".join(re.findall(r"<math.*?</math>", text)))
+    shown, formulas = (unescape(re.sub(r"<[^>]*>", "", t)) for t in (text, formulas))
+    return shown, letters, formulas
 
 
 def _outlines_once(page: str) -> str:

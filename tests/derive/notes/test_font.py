@@ -12,7 +12,7 @@ from fontTools.ttLib import TTFont
 from derive.errors import InputError
 from derive.latex import mathml
 from derive.notes import font, page
-from derive.notes.html import html
+from derive.notes.html import _characters, html
 from derive.terms import Equation, Expect, Glyph, Symbol, block
 
 
@@ -46,6 +46,20 @@ def test_a_letter_that_is_not_shown_is_not_carried():
     assert ord("𝑍") not in opened(font.embedded("A", "A")).getBestCmap()
     assert ord("𝐴") in opened(font.embedded("", "A")).getBestCmap()
     assert ord("ℎ") in opened(font.embedded("", "h")).getBestCmap()
+
+
+def test_small_shapes_are_for_what_may_be_small():
+    def small(found):
+        substitutions = found["GSUB"].table
+        (feature,) = [f.Feature for f in substitutions.FeatureList.FeatureRecord if f.FeatureTag == "ssty"]
+        tables = [t for i in feature.LookupListIndex for t in substitutions.LookupList.Lookup[i].SubTable]
+        names = {glyph for t in tables for glyph in getattr(t, "ExtSubTable", t).alternates}
+        return "".join(sorted(chr(code) for code, glyph in found.getBestCmap().items() if glyph in names))
+
+    assert set("word12𝐴") & set(small(opened(font.embedded("word 12", "A", "1")))) == set("1𝐴")
+    assert set("12dorw𝐴") <= set(small(opened(font.embedded("word 12", "A"))))
+    bracket = '<p>Text</p><math><mi mathvariant="normal">d</mi><msub><mi>x</mi><mn>0</mn></msub></math>'
+    assert _characters(bracket) == ("Textdx0", "x", "d0")
 
 
 def test_the_same_page_gives_the_same_bytes():
