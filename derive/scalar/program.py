@@ -7,13 +7,13 @@ what was proved.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from derive.errors import InputError
-from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root
+from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root, replaced
 from derive.terms import Equation, Neg, Number, Product, Sum, Symbol, Term, Zero
 
 __all__ = ["Branch", "Let", "Program"]
@@ -92,19 +92,19 @@ class Program:
         arguments = ", ".join(f"double {identifier(s)}" for s in self.arguments)
         lines = ["#include <math.h>", "", f"double {self.name}({arguments})", "{"]
         lines += [f"    const double {identifier(t.symbol)} = {_text(t.body, C)};" for t in self.lets]
-        for branch in self.branches:
-            test = " && ".join(_test(c, None, C) for c in branch.conditions) or "1"
-            lines.append(f"    if ({test}) return {_text(branch.body, C)};")
-        return "\n".join([*lines, "    return NAN;", "}", ""])
+        lines += [line for branch in self.branches for line in _branch(branch, C, "    ")]
+        return "\n".join([*lines, *self._nowhere("    return NAN;"), "}", ""])
 
     def to_javascript(self) -> str:
         """Return the source of a JavaScript function."""
         lines = [f"function {self.name}({', '.join(map(identifier, self.arguments))}) {{"]
         lines += [f"  const {identifier(t.symbol)} = {_text(t.body, JAVASCRIPT)};" for t in self.lets]
-        for branch in self.branches:
-            test = " && ".join(_test(c, None, JAVASCRIPT) for c in branch.conditions) or "true"
-            lines.append(f"  if ({test}) return {_text(branch.body, JAVASCRIPT)};")
-        return "\n".join([*lines, "  return NaN;", "}", ""])
+        lines += [line for branch in self.branches for line in _branch(branch, JAVASCRIPT, "  ")]
+        return "\n".join([*lines, *self._nowhere("  return NaN;"), "}", ""])
+
+    def _nowhere(self, line: str) -> list[str]:
+        """Return the line for where no branch is taken, if there may be such a place."""
+        return [line] if self.branches[-1].conditions else []
 
 
 NAMES = {"σ": "sigma", "ω": "omega", "λ": "lambda_", "ρ": "rho", "τ": "tau", "-": "minus", "+": "plus", "'": "_next"}
@@ -119,57 +119,95 @@ def identifier(symbol: Symbol) -> str:
 # ------------------------------------------------------------------------------------------------ text
 @dataclass(frozen=True)
 class Language:
-    """How functions are called."""
+    """How a constant is declared, and how functions are called."""
 
+    constant: str
     functions: Mapping[str, str]
-    number: Callable[[Fraction], str]
-
-
-def _decimal(value: Fraction) -> str:
-    top, bottom = f"{value.numerator}.0", f"{value.denominator}.0"
-    return top if value.denominator == 1 else f"({top}/{bottom})"
 
 
 SAME = ("sqrt", "exp", "log", "expm1", "log1p")  # 1 - exp(x) is written with expm1, ln(1 - x) with log1p
-C = Language({**{k: k for k in SAME}, "abs": "fabs", "max": "fmax"}, _decimal)
-JAVASCRIPT = Language({k: f"Math.{k}" for k in (*SAME, "abs", "max")}, _decimal)
+C = Language("const double", {**{k: k for k in SAME}, "abs": "fabs", "max": "fmax"})
+JAVASCRIPT = Language("const", {k: f"Math.{k}" for k in (*SAME, "abs", "max")})
+SUM, PRODUCT, FACTOR = 0, 1, 2  # what may stand without parentheses
 
 
-def _text(term: Term, language: Language) -> str:
+def _branch(branch: Branch, language: Language, indent: str) -> list[str]:
+    """Return the lines of a branch; an exponential function that it uses twice is computed once."""
+    body, shared = branch.body, list[str]()
+    found = list(_exponentials(body))
+    for term in sorted(dict.fromkeys(found), key=lambda t: isinstance(t, Exp)):  # 1 - exp(x) before exp(x) in it
+        if found.count(term) > 1:
+            kind = "power" if isinstance(term, Exp) else "rest"
+            name = Symbol(kind + str(len(shared) + 1), scalar=True)
+            shared.append(f"{language.constant} {name.name} = {_text(term, language)};")
+            body = replaced(body, term, name)  # type: ignore[arg-type]
+    test = " && ".join(_test(c, None, language) for c in branch.conditions)
+    value = f"return {_text(body, language)};"
+    if not test:
+        return [indent + line for line in (*shared, value)]
+    if not shared:
+        return [f"{indent}if ({test}) {value}"]
+    return [f"{indent}if ({test}) {{", *(indent * 2 + line for line in (*shared, value)), f"{indent}}}"]
+
+
+def _exponentials(term: Term) -> Iterator[Term]:
+    """Iterate over exp(x) and 1 - exp(x) in a term, the larger ones alone."""
+    match term:
+        case Exp() | Sum((Number(Fraction(numerator=1, denominator=1)), Neg(Exp()))):
+            yield term
+        case _:
+            for child in term.children():
+                yield from _exponentials(child)
+
+
+def _text(term: Term, language: Language, place: int = SUM) -> str:
+    """Write a term; ``place`` says what it stands in: a sum, a product, or where only a factor can."""
+    level, text = _written(term, language)
+    return f"({text})" if level < place else text
+
+
+def _written(term: Term, language: Language) -> tuple[int, str]:
     call = language.functions
     match term:
         case Symbol():
-            return identifier(term)
+            return FACTOR, identifier(term)
+        case Number(value) if value < 0:
+            return SUM, f"-{_text(Number(-value), language, FACTOR)}"
         case Number(value):
-            return language.number(value) if value >= 0 else f"(-{language.number(-value)})"
+            exact = value.denominator == 1 or Fraction(float(value)) == value
+            return (FACTOR, repr(float(value))) if exact else (PRODUCT, f"{value.numerator}.0/{value.denominator}.0")
         case Zero():
-            return "0.0"
+            return FACTOR, "0.0"
         case Neg(body):
-            return f"(-{_text(body, language)})"
+            return SUM, f"-{_text(body, language, PRODUCT)}"
         case Sum((Number(Fraction(numerator=1, denominator=1)), Neg(Exp(body)))):
-            return f"(-{call['expm1']}({_text(body, language)}))"
+            return SUM, f"-{call['expm1']}({_text(body, language)})"
         case Sum(addends):
-            return "(" + " + ".join(_text(a, language) for a in addends).replace("+ (-", "- (") + ")"
+            return SUM, "".join(_addend(a, language, first=i == 0) for i, a in enumerate(addends))
         case Product(factors):
-            return "(" + "*".join(_text(f, language) for f in factors) + ")"
+            return PRODUCT, "*".join(_text(f, language, FACTOR if i else PRODUCT) for i, f in enumerate(factors))
         case Quotient(top, bottom):
-            return f"({_text(top, language)}/{_text(bottom, language)})"
+            return PRODUCT, f"{_text(top, language, PRODUCT)}/{_text(bottom, language, FACTOR)}"
         case Power(body, exponent) if exponent > 0:
-            return "(" + "*".join([_text(body, language)] * exponent) + ")"
-        case Root(body):
-            return f"{call['sqrt']}({_text(body, language)})"
-        case Abs(body):
-            return f"{call['abs']}({_text(body, language)})"
+            return PRODUCT, "*".join([_text(body, language, FACTOR)] * exponent)
         case Max(body):
-            return f"{call['max']}(0.0, {_text(body, language)})"
-        case Exp(body):
-            return f"{call['exp']}({_text(body, language)})"
+            return FACTOR, f"{call['max']}(0.0, {_text(body, language)})"
         case Log(Sum((Number(Fraction(numerator=1, denominator=1)), Neg(body)))):
-            return f"{call['log1p']}((-{_text(body, language)}))"
-        case Log(body):
-            return f"{call['log']}({_text(body, language)})"
+            return FACTOR, f"{call['log1p']}({_text(Neg(body), language)})"
+        case Root(body) | Abs(body) | Exp(body) | Log(body):
+            return FACTOR, f"{call[FUNCTIONS[type(term)]]}({_text(body, language)})"
         case _:
             raise InputError(f"{type(term).__name__}: no expression for it; export a closed form")
+
+
+def _addend(term: Term, language: Language, first: bool) -> str:
+    if first:
+        return _text(term, language)
+    sign, body = ("-", term.body) if isinstance(term, Neg) else ("+", term)
+    return f" {sign} {_text(body, language, PRODUCT)}"
+
+
+FUNCTIONS = {Root: "sqrt", Abs: "abs", Max: "max", Exp: "exp", Log: "log"}
 
 
 def _test(condition: Equation, env: Mapping[str, Any] | None, language: Any) -> Any:
@@ -215,7 +253,6 @@ def _fold(term: Term, env: Mapping[str, Any], apply: Callable[[str, Any], Any]) 
         case Log(Sum((Number(Fraction(numerator=1, denominator=1)), Neg(body)))):
             return apply("log1p", -_fold(body, env, apply))
         case Root(body) | Abs(body) | Max(body) | Exp(body) | Log(body):
-            names = {Root: "sqrt", Abs: "abs", Max: "max", Exp: "exp", Log: "log"}
-            return apply(names[type(term)], _fold(body, env, apply))
+            return apply(FUNCTIONS[type(term)], _fold(body, env, apply))
         case _:
             raise InputError(f"{type(term).__name__}: no expression for it; export a closed form")

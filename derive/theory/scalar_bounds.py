@@ -1,6 +1,6 @@
-"""How long it takes to the steady state: explicit bounds on the error, and the time after which it is below any ε.
+"""How long it takes to the steady state: explicit bounds on the error, and the time after which it is below any η.
 
-|P(t) - P| <= c e^(-2St), c = |P(0) - P| (1 + 2S/(S - A + g P(0))); so it is below ε from t = ln(1 + c/ε)/(2S) on.
+|P(t) - P| <= c e^(-2St), c = |P(0) - P| (1 + 2S/(S - A + g P(0))); so it is below η from t = ln(1 + c/η)/(2S) on.
 In discrete time T takes the place of 2S, ρ^k that of the exponential function, and -ln ρ that of the rate 2S.
 """
 
@@ -17,7 +17,7 @@ from derive.theory.scalar_discrete import RECIPROCAL
 from derive.theory.scalar_recursion import HYPOTHESIS, halves
 
 FLOOR, FLOOR_D = "not (C W = 0, A > 0, P0 = 0)", "not (C Q = 0, A^2 > 1, P0 = 0)"
-LATER, LATER_D = "t >= ln(1 + c/ε)/(2S)", "k >= ln(1 + c/ε)/(-ln ρ)"
+LATER, LATER_D = "t >= ln(1 + c/η)/(2S)", "k >= ln(1 + c/η)/(-ln ρ)"
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,10 @@ def discrete(t: Theory) -> Approach:
 
 def declare(t: Theory) -> None:
     """Declare the error allowed, the constants of both bounds, and the logarithms that the times are made of."""
-    error = t.scalar("ε", meaning="error allowed")
-    t.assume("ε > 0", error, ">", text="some error is allowed")
-    t.atom("reciprocal", error, "ε > 0", "1/ε")
-    t.atom("log", error, "ε > 0", "ln ε")
+    error = t.scalar("η", meaning="error allowed")
+    t.assume("η > 0", error, ">", text="some error is allowed")
+    t.atom("reciprocal", error, "η > 0", "1/η")
+    t.atom("log", error, "η > 0", "ln η")
     t.atom("log", ONE, "1 > 0", "ln 1")
     _declare_approach(t, continuous(t), LATER)
     _declare_powers(t)
@@ -81,19 +81,19 @@ def _declare_powers(t: Theory) -> None:
 
 
 def _declare_approach(t: Theory, a: Approach, later: str) -> None:
-    error = t.symbols["ε"]
+    error = t.symbols["η"]
     t.atom("absolute", a.start, name="|start|" + a.sub)
     t.atom("absolute", a.gap, name="|error|" + a.sub)
     c = t.scalar("c" + a.sub, Glyph("c", sub=a.sub[1:]), meaning="constant of the bound")
     t.define("c" + a.sub, c, Abs(a.start) * a.factor)
     t.atom("reciprocal", a.decay, a.positive, "1/decay" + a.sub)
     larger = (error + c) * a.decay
-    t.atom("reciprocal", larger, "(ε + c) decay > 0" + a.sub, "1/larger" + a.sub)
+    t.atom("reciprocal", larger, "(η + c) decay > 0" + a.sub, "1/larger" + a.sub)
     if a.decay != t.symbols.get("ρ^k"):
         t.atom("log", a.decay, a.positive, "ln decay" + a.sub)
-    t.atom("log", error + c, "ε + c > 0" + a.sub, "ln(ε+c)" + a.sub)
-    t.atom("log", larger, "(ε + c) decay > 0" + a.sub, "ln larger" + a.sub)
-    t.assume(later, a.exponent, "≥", Log(error + c) - Log(error), "later than ε asks for", case=True)
+    t.atom("log", error + c, "η + c > 0" + a.sub, "ln(η+c)" + a.sub)
+    t.atom("log", larger, "(η + c) decay > 0" + a.sub, "ln larger" + a.sub)
+    t.assume(later, a.exponent, "≥", Log(error + c) - Log(error), "later than η asks for", case=True)
 
 
 def derive(b: ScalarBuilder) -> None:
@@ -123,30 +123,30 @@ def _derive_bound(b: ScalarBuilder, a: Approach, equation: str, share: tuple[str
 
 
 def _derive_time(b: ScalarBuilder, a: Approach, later: str, logarithm: str) -> None:
-    """Derive that the error is at most ε from the time on that the case ``later`` names."""
+    """Derive that the error is at most η from the time on that the case ``later`` names."""
     s, tail = b.theory.symbols, a.sub.replace("_d", " in discrete time")
-    error, c = s["ε"], s["c" + a.sub]
+    error, c = s["η"], s["c" + a.sub]
     larger = (error + c) * a.decay
-    b.sign("ε + c > 0" + a.sub, Equation(error + c, ">", ZERO), "of such", ["ε > 0", "c >= 0" + a.sub], alone=True)
-    b.sign("(ε + c) decay > 0" + a.sub, Equation(larger, ">", ZERO), "a product", ["ε + c > 0" + a.sub, a.positive],
+    b.sign("η + c > 0" + a.sub, Equation(error + c, ">", ZERO), "of such", ["η > 0", "c >= 0" + a.sub], alone=True)
+    b.sign("(η + c) decay > 0" + a.sub, Equation(larger, ">", ZERO), "a product", ["η + c > 0" + a.sub, a.positive],
            alone=True)  # fmt: skip
     b.sign("1/larger > 0" + a.sub, Equation(Quotient(ONE, larger), ">", ZERO), RECIPROCAL,
-           ["(ε + c) decay > 0" + a.sub], identities=["1/larger" + a.sub], alone=True)  # fmt: skip
+           ["(η + c) decay > 0" + a.sub], identities=["1/larger" + a.sub], alone=True)  # fmt: skip
     b.state("larger over decay" + a.sub, Equation(Quotient(larger, a.decay), "=", error + c), "cancel",
             ["1/decay" + a.sub])  # fmt: skip
     b.linked("logarithm of a product" + a.sub, Equation(Log(Quotient(larger, a.decay)), "=", Log(error + c)),
              "same argument", "the same", ["larger over decay" + a.sub])  # fmt: skip
     b.given(later)
     b.sign("enough" + a.sub, Equation(error, "≥", larger), "ln x is at most x - 1",
-           [f"ln ε - ln larger{a.sub} ≤", later, "1/larger > 0" + a.sub],
+           [f"ln η - ln larger{a.sub} ≤", later, "1/larger > 0" + a.sub],
            identities=["logarithm of a product" + a.sub, logarithm, "1/larger" + a.sub], alone=True)  # fmt: skip
-    b.sign("settled" + tail, Equation(error, "≥", Abs(a.gap)), "the bound is below ε",
-           ["enough" + a.sub, "bound of the error" + tail, "ε > 0", a.positive], alone=True)  # fmt: skip
+    b.sign("settled" + tail, Equation(error, "≥", Abs(a.gap)), "the bound is below η",
+           ["enough" + a.sub, "bound of the error" + tail, "η > 0", a.positive], alone=True)  # fmt: skip
 
 
 def _derive_continuous(b: ScalarBuilder) -> None:
     t = b.theory
-    S, g, P0, D, time, error = (t.symbols[k] for k in ("S", "g", "P0", "D0", "t", "ε"))
+    S, g, P0, D, time, error = (t.symbols[k] for k in ("S", "g", "P0", "D0", "t", "η"))
     a, floor = continuous(t), S - t.symbols["A"] + g * P0
     b.heading("How long it takes")
     b.say("The denominator is ", a.decay + floor * t.symbols["h"], "; its reciprocal has a bound without ", time, ":")
@@ -157,11 +157,11 @@ def _derive_continuous(b: ScalarBuilder) -> None:
     b.sign("bound of 1/D", Equation(a.factor, "≥", Quotient(ONE, D)), "divide", ["slack", "1/D0 > 0"])
     _derive_bound(b, a, "distance to the steady state", ("1/D0 > 0", "bound of 1/D"), a.positive)
     b.say("So the error is below any ", error, " after a time that is known beforehand:")
-    b.given("ε > 0")
+    b.given("η > 0")
     b.sign("1 > 0", Equation(ONE, ">", ZERO), "a number", [])
-    b.state("ε over itself", Equation(Quotient(error, error), "=", ONE), "cancel")
+    b.state("η over itself", Equation(Quotient(error, error), "=", ONE), "cancel")
     b.linked("logarithm of one", Equation(Log(Quotient(error, error)), "=", Log(ONE)), "same argument", "the same",
-             ["ε over itself"])  # fmt: skip
+             ["η over itself"])  # fmt: skip
     b.rate("logarithm of the decay", Equation(Log(a.decay), "=", -a.exponent), "same derivative, same start",
            ["logarithm of one", "1/decay"])  # fmt: skip
 

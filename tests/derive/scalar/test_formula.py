@@ -158,7 +158,7 @@ def test_recursion_is_that_of_exact_numbers():
 
 
 def test_bounds_of_the_error_hold():
-    """The theorems of the lecture, in numbers: |error| <= c decay, and the time that ε asks for."""
+    """The theorems of the lecture, in numbers: |error| <= c decay, and the time that the error allowed asks for."""
     f, steady = formula("riccati_transient").to_numpy(), formula("care_covariance").to_numpy()
     for A, C, W, V, P0 in ((1.0, 1.0, 1e-3, 1.0, 0.0), (-1.0, 2.0, 0.5, 0.3, 9.0), (0.5, 1.0, 0.0, 1.0, 1e-6)):
         S, P = math.sqrt(A**2 + C**2 * W / V), steady(A, C, W, V)
@@ -262,5 +262,5 @@ def test_unknown_formula():
 def test_numbers_are_exact():
     half = replace(formula("care_closed_loop").program.branches[0], body=Number(Fraction(-1, 3)))
     program = replace(formula("care_closed_loop").program, branches=(half,))
-    assert "(-(1.0/3.0))" in program.to_c()
+    assert "return -(1.0/3.0);" in program.to_c()
     assert program.to_numpy()(0, 1, 0, 1) == -1 / 3
