@@ -15,6 +15,7 @@ from derive.theory import (
     spectrum_bode,
     spectrum_bounds,
     spectrum_cross,
+    spectrum_discrete,
     spectrum_filter,
     spectrum_half_plane,
     spectrum_jensen,
@@ -37,6 +38,7 @@ PARTS = (
     spectrum_bounds,
     spectrum_special,
     spectrum_cross,
+    spectrum_discrete,
 )
 
 

@@ -279,12 +279,37 @@ def test_a_parameter_with_exceptions_or_hypotheses_does_not_run():
             check_parameter(moved[0], [links[0], *moved[1:]], reading)
 
 
+def small(f, g, w, base=(ZERO, ZERO)):
+    """A theory where ∫ ω dω = c would be given, and the links of a statement about ∫ f dω."""
+    t, x, r, c = running()
+    p = t.run("ρ")
+    forms = f(x, r, p), g(x, r, p)
+    for k, body in enumerate((*forms, g(x, p, p), base[0](x, r) if callable(base[0]) else base[0])):
+        t.atom("improper", body, name=f"integral {k}")
+    v, rate = f(c, r, p), w(c, r, p)
+    f0, v0 = (b(y, r) if callable(b) else b for b, y in zip(base, (x, c), strict=True))
+    whole = lambda body: Definite(body, x, ZERO, Infinity())  # noqa: E731
+    links = [
+        Equation(whole(g(x, p, p)), "=", w(c, p, p)), Equation(Rate(forms[0], r), "=", forms[1]),
+        Equation(Rate(v, r), "=", rate), Equation(forms[1], "≥", ZERO), Equation(Limit(forms[0], r, ZERO), "=", f0),
+        Equation(Limit(v, r, ZERO), "=", v0), *([Equation(whole(f0), "=", v0)] if base != (ZERO, ZERO) else []),
+    ]  # fmt: skip
+    check_parameter(Equation(whole(forms[0]), "=", v), links, t.reading())
+
+
 def test_the_inner_parameter_occurs_nowhere_else():
     """∫ g(r, ρ) at r = ρ says nothing of r ≠ ρ."""
-    statement, links, reading = given()
-    t = spectrum.theory()
-    more = renamed([statement, *links], t.symbols["β"], t.symbols["ρ"])
-    refused(check_parameter, more[0], more[1:], reading)
+    small(lambda x, r, p: r * r * x, lambda x, r, p: 2 * r * x, lambda x, r, p: 2 * r * x)
+    with pytest.raises(Rejected, match="ρ"):
+        small(lambda x, r, p: r * r * p * x, lambda x, r, p: 2 * r * p * x, lambda x, r, p: 2 * r * p * x)
+
+
+def test_the_base_may_be_an_integral_but_does_not_move():
+    f, g = (lambda x, r, p: r * r * x + x), (lambda x, r, p: 2 * r * x)
+    same_base, moving = (lambda x, r: x), (lambda x, r: r * x)
+    small(f, g, g, (same_base, same_base))
+    with pytest.raises(Rejected, match="limit"):
+        small(f, g, g, (moving, moving))
 
 
 # ------------------------------------------------------------------------------------------------ rule: any sign
