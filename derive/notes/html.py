@@ -33,9 +33,10 @@ LEGEND = {
 
 def html(document: Document) -> str:
     """Return the page."""
-    body = "\n".join(map(block, document.blocks))
+    blocks = [b for b in document.blocks if not (isinstance(b, Section) and b.title == document.title)]
+    body = "\n".join(map(block, blocks))
     count = f"{document.proved} of {document.total} steps proved and replayed" if document.total else ""
-    sections = [b for b in document.blocks if isinstance(b, Section)]
+    sections = [b for b in blocks if isinstance(b, Section)]
     return whole_page(document.title, document.subtitle, count, body, _contents(sections))
 
 
@@ -105,7 +106,10 @@ _PAGE = """<!DOCTYPE html>
 
 
 def _contents(sections: Sequence[Section]) -> str:
-    """Return the table of contents: lectures, with their sections folded below."""
+    """Return the table of contents: lectures, with their sections folded below, or the sections of a single one."""
+    if all(section.level > 1 for section in sections):
+        below = "".join(f'<li><a href="#{s.id}">{escape(s.title)}</a></li>' for s in sections)
+        return f'<ol class="sections">{below}</ol>' if below else ""
     items: list[str] = []
     for i, section in enumerate(sections):
         if section.level != 1:

@@ -203,6 +203,11 @@ def visible(number: str) -> str:
     return "" if number.startswith("u") else number
 
 
+def readable(name: str) -> str:
+    """Return the name of a step as the page shows it, with proper signs."""
+    return name.replace(">=", "≥").replace("<=", "≤")
+
+
 def document_of(lecture: Lecture, outcomes: Sequence[Outcome]) -> Document:
     """Lay out a lecture; every badge of a derived row comes from the outcome of its replay."""
     verdicts = {o.step: o for o in outcomes}
@@ -345,7 +350,7 @@ class _Layout:
         step = next((s for s in self.lecture.steps if s.name == name), None)
         if step is not None:
             lhs = step.statement.lhs
-            return lhs if step.statement.relation == "=" and isinstance(lhs, (Symbol, Expect, Dot)) else name
+            return lhs if step.statement.relation == "=" and isinstance(lhs, (Symbol, Expect, Dot)) else readable(name)
         if isinstance(item, DeclaredInverse):
             return Inverse(item.of)
         if isinstance(item, DeclaredAtom):

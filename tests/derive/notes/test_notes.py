@@ -78,6 +78,13 @@ def test_what_is_displayed_again_has_an_anchor_of_its_own():
     assert [name for name in ids if name.endswith("-2")] == [f"{name}-2" for name in ids[: len(first.rows)]]
 
 
+def test_a_page_of_one_lecture_has_its_title_once(whole_page):
+    text = html(page(["observer"]))
+    assert text.count("The Kalman filter as an observer") == 2  # title of the window, heading
+    assert '<ol class="sections"><li><a href="#observer-Plant-and-observer">' in text
+    assert whole_page.count(">The Kalman filter as an observer<") == 2  # contents, heading
+
+
 def test_the_page_is_small_enough(whole_page):
     assert len(whole_page.encode()) <= 600_000
 
