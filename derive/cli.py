@@ -97,8 +97,8 @@ def aligned(rows: list[dict[str, str | int]]) -> str:
 def tour(folder: Path) -> int:
     """Write notes of every lecture, the findings on their sources and one plant validated by every route.
 
-    The folder then holds index.html, which opens in a browser without network, index.md, the figures, and
-    certificates/*.json.
+    The folder then holds index.html, which opens in a browser without network, pages of long lectures, sliders.html
+    for the scalar filter, the same in Markdown, the figures, and certificates/*.json.
     """
     from derive.files import make_folder
 
