@@ -279,7 +279,7 @@ def test_a_parameter_with_exceptions_or_hypotheses_does_not_run():
             check_parameter(moved[0], [links[0], *moved[1:]], reading)
 
 
-def small(f, g, w, base=(ZERO, ZERO)):
+def small(f, g, w, base=(ZERO, ZERO), end=ZERO):
     """A theory where ∫ ω dω = c would be given, and the links of a statement about ∫ f dω."""
     t, x, r, c = running()
     p = t.run("ρ")
@@ -291,8 +291,8 @@ def small(f, g, w, base=(ZERO, ZERO)):
     whole = lambda body: Definite(body, x, ZERO, Infinity())  # noqa: E731
     links = [
         Equation(whole(g(x, p, p)), "=", w(c, p, p)), Equation(Rate(forms[0], r), "=", forms[1]),
-        Equation(Rate(v, r), "=", rate), Equation(forms[1], "≥", ZERO), Equation(Limit(forms[0], r, ZERO), "=", f0),
-        Equation(Limit(v, r, ZERO), "=", v0), *([Equation(whole(f0), "=", v0)] if base != (ZERO, ZERO) else []),
+        Equation(Rate(v, r), "=", rate), Equation(forms[1], "≥", ZERO), Equation(Limit(forms[0], r, end), "=", f0),
+        Equation(Limit(v, r, end), "=", v0), *([Equation(whole(f0), "=", v0)] if base != (ZERO, ZERO) else []),
     ]  # fmt: skip
     check_parameter(Equation(whole(forms[0]), "=", v), links, t.reading())
 
@@ -302,6 +302,13 @@ def test_the_inner_parameter_occurs_nowhere_else():
     small(lambda x, r, p: r * r * x, lambda x, r, p: 2 * r * x, lambda x, r, p: 2 * r * x)
     with pytest.raises(Rejected, match="ρ"):
         small(lambda x, r, p: r * r * p * x, lambda x, r, p: 2 * r * p * x, lambda x, r, p: 2 * r * p * x)
+
+
+def test_the_parameter_starts_at_zero_or_at_infinity():
+    f, g = (lambda x, r, p: r * r * x), (lambda x, r, p: 2 * r * x)
+    small(f, g, g)
+    with pytest.raises(Rejected, match="infinity"):
+        small(f, g, g, end=Symbol("t", scalar=True))
 
 
 def test_the_base_may_be_an_integral_but_does_not_move():
@@ -346,6 +353,23 @@ def test_any_sign_needs_an_even_integrand():
     links = [Equation(Definite(f, w, ZERO, Infinity()), "=", r), Equation(Rate(f, r), "=", w), Equation(w, "≥", ZERO)]
     with pytest.raises(Rejected, match="even"):
         check_any_sign(statement, links, t.reading())
+
+
+def test_any_sign_is_about_a_parameter_that_occurs_nowhere_else():
+    t, w, r, c = running()
+    a = t.parameter("α")
+    t.atom("absolute", a, name="|α|")
+    for extra in (c, a):
+        for name, x in (("r", r), ("α", a)):
+            t.atom("improper", x * x * extra * w, name=f"integral {name} {extra.name}")
+    forms = [(r * r * e * w, a * a * e * w, r * r * e * c, Abs(a) * Abs(a) * e * c) for e in (c, a)]
+    for k, (f, F, v, V) in enumerate(forms):
+        half = lambda body: Definite(body, w, ZERO, Infinity())  # noqa: E731
+        links = [Equation(half(f), "=", v), Equation(Rate(f, r), "=", 2 * r * w), Equation(2 * r * w, "≥", ZERO)]
+        if k == 0:
+            check_any_sign(Equation(half(F), "=", V), links, t.reading())
+        else:
+            refused(check_any_sign, Equation(half(F), "=", V), links, t.reading())
 
 
 # ------------------------------------------------------------------------------------------------ hypotheses on r
@@ -444,6 +468,21 @@ def test_a_logarithm_is_continuous_where_its_argument_stays_positive():
     assert regular_logarithm("ln k+", "ω", reading)
     for name in ("ln u-", "ln ω^2", "ln u- φ", "1/k+", "σ0"):  # roots on the axis, at 0; no logarithms
         assert not regular_logarithm(name, "ω", reading)
+
+
+def test_other_logarithms_are_not_known_to_be_continuous():
+    """ln(c + ω), ln(c - ω^2) and ln(c ω^2 + 1) with c > 1/4: no square of a shift and a positive number."""
+    t, w, _, c = running()
+    t.assume("c > 0", c, ">")
+    t.assume("c > 1/4", c - Number(Fraction(1, 4)), ">")
+    t.assume("1 > 0", ONE, ">")
+    for name, body in (("sum", c + w), ("difference", c - w * w), ("multiple", c * w * w + ONE)):
+        t.assume(f"{name} > 0", body, ">")
+        t.atom("log", body, f"{name} > 0", name)
+        assert not regular_logarithm(name, "ω", t.reading())
+    t.assume("square > 0", w * w + c, ">")
+    t.atom("log", w * w + c, "square > 0", "square")
+    assert regular_logarithm("square", "ω", t.reading())
 
 
 def test_an_integral_over_the_whole_axis_is_that_of_the_even_part():
