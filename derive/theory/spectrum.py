@@ -14,6 +14,7 @@ from derive.derivation import Lecture
 from derive.theory import (
     spectrum_bode,
     spectrum_bounds,
+    spectrum_circle,
     spectrum_cross,
     spectrum_discrete,
     spectrum_filter,
@@ -39,6 +40,7 @@ PARTS = (
     spectrum_special,
     spectrum_cross,
     spectrum_discrete,
+    spectrum_circle,
 )
 
 

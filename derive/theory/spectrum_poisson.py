@@ -197,7 +197,7 @@ def _derive_signs(b: ScalarBuilder) -> None:
     positive(b, rows)
 
 
-def _turns(t: Theory) -> Term:
+def turns(t: Theory) -> Term:
     """Return the antiderivative of both kernels times σ0."""
     low, high = (TimesArctan(shift(t, k), t.symbols["σ0"]) for _, k in SIDES)
     return low + high
@@ -229,11 +229,11 @@ def _derive_antiderivative(b: ScalarBuilder) -> None:
         )
         b.state(f"H{sign} at zero", Equation(Limit(H, w, ZERO), "=", ZERO), "both functions are odd", [f"H{sign}"])
     g, value = rates(t, a)
-    G = t.symbols["H-"] + t.symbols["H+"] - Quotient(FOUR, a * sigma) * _turns(t)
-    _by_antiderivative(b, "rate", G, g, value, ["rate of H-", "rate of H+", "|σ0| = σ0"])
+    G = t.symbols["H-"] + t.symbols["H+"] - Quotient(FOUR, a * sigma) * turns(t)
+    by_antiderivative(b, "rate", G, g, value, ["rate of H-", "rate of H+", "|σ0| = σ0"])
 
 
-def _by_antiderivative(b: ScalarBuilder, name: str, G: Term, g: Term, value: Term, using: Sequence[str]) -> None:
+def by_antiderivative(b: ScalarBuilder, name: str, G: Term, g: Term, value: Term, using: Sequence[str]) -> None:
     """Derive an integral over the positive frequencies from an antiderivative that vanishes at 0."""
     w = b.theory.symbols["ω"]
     b.state(f"{name}: antiderivative", Equation(Rate(G, w), "=", g), "differentiate", using)
@@ -316,7 +316,7 @@ def _derive_lemma(b: ScalarBuilder) -> None:
         links,
     )
     log = 2 * Log(square(r))
-    _by_antiderivative(b, "far root", Quotient(ONE, sigma) * log * _turns(t), kernels(t) * log, PI * log, ["|σ0| = σ0"])
+    by_antiderivative(b, "far root", Quotient(ONE, sigma) * log * turns(t), kernels(t) * log, PI * log, ["|σ0| = σ0"])
     b.linked(
         "lemma for r > 0",
         Equation(half(t, integrand(t, r, c)), "=", integral(t, r, c)),
