@@ -65,6 +65,27 @@ class Point:
         if "A < 0" in cases:
             self.known["A"] = -rng.random() - 0.1
         self.assigned = assigned(cases)
+        self.impose(cases)
+
+    def impose(self, cases) -> None:
+        """Choose some parameters so that cases that are equations between several hold."""
+        known, draw = self.known, self.scalar
+        if "T = 0" in cases:
+            known |= {"A": self.rng.choice((1.0, -1.0)), "Q": 0.0}
+        if "F = 0" in cases:
+            known["N"] = draw("A") * draw("V") / draw("C")
+        if "q = 0" in cases:
+            known["W"] = draw("N") ** 2 / draw("V")
+        if "q_d = 0" in cases:
+            known["Q"] = draw("S_d") ** 2 / draw("R")
+        if "F_d^2 = 1" in cases:
+            known["A"] = self.rng.choice((1.0, -1.0)) + draw("S_d") * draw("C") / draw("R")
+        if "W = ε^2" in cases:
+            known |= {"W": draw("ε") ** 2, "V": 1.0}
+        if "k = 0" in cases:
+            known["k"] = 0.0
+        elif "ln ρ^k = k ln ρ" in cases:
+            known["k"] = draw("ln ρ^k") / draw("ln ρ")
 
     def scalar(self, name: str) -> float:
         if name not in self.known:
@@ -121,8 +142,8 @@ def test_statements_hold_at_random_numbers(walked):
             rests = item.rests_on(name) | set(step.uses)
             cases = {c for c in rests if getattr(item.theory.declared.get(c), "kind", "") == "hypothesis"}
             poly = value(step.statement.lhs, reading) - value(step.statement.rhs, reading)
-            point = Point(seed, reading.real, cases)
             try:
+                point = Point(seed, reading.real, cases)
                 if not holds(item, cases, point, reading):
                     continue
                 found, size = point.value(poly), point.scale(poly)
@@ -134,9 +155,9 @@ def test_statements_hold_at_random_numbers(walked):
                 loose = 1e-3 if any(s.startswith("integral of") for s in scalars_of(poly)) else 1e-5
                 assert abs(found) <= loose * size, name
             else:
-                assert found >= -1e-7 * size, name
+                assert found >= -1e-5 * size, name  # a double root has half of the digits
     assert count > 600
-    assert len(tried) > 0.8 * len(steps)
+    assert len(tried) > 0.95 * len(steps)
 
 
 def holds(item, cases, point, reading) -> bool:
