@@ -6,17 +6,18 @@ it by ``adopt``, one proved statement at a time; files carry names only, never r
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from derive.functions import Power, is_scalar, value
+from derive.functions import Limit, Power, is_scalar, value
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.real import COMPLEX, FREQUENCY, RESERVED, TIME, UNIT, Family, Real, scalar, scalars_of
 from derive.roots import is_real
 from derive.rules import Context, Fact, Grid
 from derive.scalars import adopt_atom, adopt_scalar
+from derive.spectral import Det, Roots
 from derive.terms import (
     Dot,
     Equation,
@@ -28,6 +29,7 @@ from derive.terms import (
     Sum,
     Symbol,
     Term,
+    Trace,
     Transpose,
     Zero,
     lower,
@@ -323,15 +325,27 @@ class Theory:
         if taken & RESERVED or any(counts[f.index] != f.count for f in self.families.values()):
             raise Rejected("roots are numbered by an index of their own, from 1 to one count")
 
-    def settle(self, reading: Reading) -> Reading:
-        """Adopt every declaration whose inverses are available by now, in the order of declaration."""
+    def settle(self, reading: Reading, learnt: Equation | None = None) -> Reading:
+        """Adopt every declaration whose reasons are available by now, in the order of declaration.
+
+        An equation that was ``learnt`` is a reason for nothing but an inverse that waits for two identities.
+        """
+        if learnt is not None and learnt.relation == "=" and not any(self._wait_for_identities(reading)):
+            return reading
         for item in self.declared.values():
-            if item.name not in reading.adopted and not self._early(item, reading):
+            if item.name in reading.adopted or _waits(item, reading):
+                continue
+            if not self._early(item, reading):
                 try:
                     reading = declare(reading, item)
                 except MissingInverse:
                     continue
         return reading
+
+    def _wait_for_identities(self, reading: Reading) -> Iterator[bool]:
+        for item in self.declared.values():
+            if isinstance(item, DeclaredInverse) and item.name not in reading.adopted:
+                yield not isinstance(item.because, str)
 
     def _early(self, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
         """Tell whether a declaration speaks of a scalar whose definition is not adopted yet."""
@@ -350,6 +364,11 @@ class Theory:
         return {size for s in self.symbols.values() for size in (s.rows, s.cols) if size}
 
 
+def _waits(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
+    """Tell whether the fact by which an atom exists is not there yet."""
+    return isinstance(item, DeclaredAtom) and bool(item.because) and item.because not in reading.context.facts
+
+
 def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> tuple[Term, ...]:
     if isinstance(item, Declared):
         return item.statement.lhs, item.statement.rhs
@@ -359,6 +378,13 @@ def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) ->
 def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> Reading:
     """Extend a reading by one declaration of the theory."""
     _check_hypothesis(item, reading)
+    if isinstance(item, Declared) and item.statement.relation == ":=" and isinstance(item.statement.lhs, Symbol):
+        below = frozenset(n.name for n in walk(item.statement.rhs) if isinstance(n, Symbol))
+        letters = {**reading.real.letters, item.statement.lhs.name: below}
+        reading = replace(reading, real=replace(reading.real, letters=letters))
+    reading = replace(
+        reading, real=replace(reading.real, fixed={**reading.real.fixed, item.name: _fixed(item, reading)})
+    )
     if isinstance(item, Declared):
         reading = adopt(reading, item.name, item.statement)
     elif isinstance(item, DeclaredFact):
@@ -370,6 +396,31 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
     else:
         reading = adopt_inverse(reading, item)
     return replace(reading, adopted=reading.adopted | {item.name})
+
+
+def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> frozenset[str]:
+    """Return the scalars that a hypothesis holds at some value, and that no limit or derivative may move.
+
+    x > 0 and x ≥ 0 are true of all values that a variable takes; so is an equation between functions of s.
+    """
+    if isinstance(item, (DeclaredInverse, DeclaredAtom)) or (isinstance(item, Declared) and item.generic):
+        return frozenset()
+    nodes = [n for t in _terms_of(item) for n in walk(t)]
+    found = reading.real.reached(n.name for n in nodes if isinstance(n, Symbol))
+    found -= {name for f in reading.real.families.values() for name in (f.index, f.count)}
+    if isinstance(item, DeclaredFact) or any(isinstance(n, (Det, Trace, Roots)) for n in nodes):
+        found -= {COMPLEX}
+    if any(isinstance(n, Symbol) and not n.scalar and n.name in reading.context.complex for n in nodes):
+        found -= {COMPLEX}
+    match item:
+        case Declared(statement=Equation(Symbol(name=name), ">" | "≥", Zero())) if name not in reading.real.atoms:
+            return frozenset()
+        case Declared(statement=Equation(Symbol(scalar=True), ":=", _)):
+            return frozenset()
+        case Declared(statement=Equation(Limit(_, symbol, _), _, _)):
+            return frozenset(found - {symbol.name})
+        case _:
+            return frozenset(found)
 
 
 def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> None:

@@ -13,10 +13,10 @@ from typing import Literal
 
 from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt
 from derive.display import Displayed
-from derive.functions import single_of
+from derive.functions import Definite, Limit, Rate, Start, single_of
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
-from derive.real import NEGATION, Sign
+from derive.real import NEGATION, TIME, Sign
 from derive.roots import check_positive, determinant_claim
 from derive.rules import (
     Comparison,
@@ -45,6 +45,7 @@ from derive.terms import (
     Zero,
     lower,
     lower_trace,
+    walk,
 )
 
 Rule = Literal[
@@ -179,6 +180,7 @@ def order_claim(statement: Equation, reading: Reading) -> Grid:
 def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     """Replay one step, or raise Rejected."""
     context, proof = reading.context, step.proof
+    _check_variables(step, reading, earlier)
     parts = PARTS.get(step.rule, ("identities",))
     if any(getattr(proof, f.name) and f.name not in parts for f in fields(proof)):
         raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
@@ -217,6 +219,24 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
             if certificate.trace != claim.trace:
                 raise Rejected("a certificate under the trace does not prove the matrices equal")
             replay(certificate, claim.claim, context.relations, context.alphabet)
+
+
+def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> None:
+    """Reject a limit, derivative or integral in a variable that a hypothesis holds at some value."""
+    nodes = [n for side in (step.statement.lhs, step.statement.rhs) for n in walk(side)]
+    moving = {n.symbol.name for n in nodes if isinstance(n, (Limit, Rate, Start, Definite))}
+    moving |= {TIME} if step.rule == "same rate" else set()
+    if not moving:
+        return
+    seen, waiting = set[str](), {*step.uses, *step.proof.relations()}
+    while waiting:
+        seen.add(name := waiting.pop())
+        if moving & reading.real.fixed.get(name, frozenset()):
+            raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
+        if name in earlier:
+            waiting |= {*earlier[name].uses, *earlier[name].proof.relations()} - seen
+        elif name in reading.real.reasons:
+            waiting |= {reading.real.reasons[name]} - seen
 
 
 def _check_chain(step: Step, earlier: dict[str, Step]) -> None:
@@ -261,7 +281,7 @@ def verify(theory: Theory, steps: Sequence[Step]) -> list[Outcome]:
 
 def learn(reading: Reading, theory: Theory, step: Step) -> Reading:
     """Let a proved step serve as a lemma, and take up declarations that waited for it."""
-    return theory.settle(adopt(reading, step.name, step.statement)) if step.lemma else reading
+    return theory.settle(adopt(reading, step.name, step.statement), step.statement) if step.lemma else reading
 
 
 # ------------------------------------------------------------------------------------------------ lectures

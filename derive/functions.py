@@ -36,6 +36,7 @@ from derive.real import (
     reciprocal,
     reflect,
     scalar,
+    scalars_of,
 )
 from derive.spectral import (
     At,
@@ -378,7 +379,23 @@ def square_of(body: Term, reading: Reading) -> Poly:
         raise Rejected("no determinant or trace of an integral or of white noise is read")
     if not _constant(grid[0][0], reading):
         raise Rejected("no determinant or trace of a matrix that depends on time is read")
+    if _behind(grid[0][0], reading) - {COMPLEX}:
+        raise Rejected("no determinant or trace of a matrix that depends on a parameter other than s is read")
     return grid[0][0]
+
+
+def _behind(poly: Poly, reading: Reading) -> set[str]:
+    """Return the scalars on which letters depend: those in what they invert, and in what defines them."""
+    found, seen, waiting = set[str](), set[str](), {parts(a)[0] for _, w in poly.terms for a in w}
+    names = {letter: matrix for matrix, letter in reading.inverses.items()}
+    while waiting:
+        seen.add(letter := waiting.pop())
+        below = set(reading.real.letters.get(letter, ()))
+        if letter in names:
+            below |= scalars_of(names[letter]) | {parts(a)[0] for _, w in names[letter].terms for a in w}
+        found |= reading.real.reached(below & reading.context.alphabet.scalars)
+        waiting |= below - reading.context.alphabet.scalars - seen
+    return found
 
 
 def _constant(poly: Poly, reading: Reading) -> bool:

@@ -68,6 +68,9 @@ class Real:
     sums: tuple[tuple[str, str, Poly, Poly], ...] = ()  # proved limits of sums: variable, point, sum, limit
     families: Mapping[str, Family] = field(default_factory=dict[str, Family])
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
+    fixed: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # by a hypothesis, its name
+    letters: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # what defines matrices
+    reasons: Mapping[str, str] = field(default_factory=dict[str, str])  # why atoms exist
     pending: frozenset[str] = frozenset()  # scalars that stand for others, once their declarations are taken up
     generic: frozenset[str] = frozenset()  # variables of which finitely many values are excepted by some facts
     running: frozenset[str] = frozenset()  # parameters of which nothing but r > 0 is assumed, for all r or almost all

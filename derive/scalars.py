@@ -112,7 +112,8 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
         raise MissingInverse(f"the logarithm in {name} is not declared yet")
     if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
         facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
-    real = replace(reading.real, atoms={**reading.real.atoms, name: atom})
+    reasons = {**reading.real.reasons, **({name: because} if because else {})}
+    real = replace(reading.real, atoms={**reading.real.atoms, name: atom}, reasons=reasons)
     facts |= log_facts(name, real) if kind == "log" else {}
     relations = {**context.relations, **({name: relation} if relation is not None else {})}
     context = replace(context, relations=relations, facts={**context.facts, **facts})

@@ -548,6 +548,48 @@ def test_a_point_with_an_index_is_no_constant():
     rejected(t, same(Total(log, i, m), m * log))
 
 
+# ------------------------------------------------------------------------------------------------ held variables
+@pytest.mark.parametrize("relation", [">", "="])
+def test_a_limit_in_a_variable_that_is_held(relation: str):
+    """1/2 ≤ 1/x for x < 1, or x = 1, does not make lim 1/2 zero."""
+    t, (x,) = theory("x")
+    t.assume("x > 0", x, ">")
+    t.atom("reciprocal", x, "x > 0", "1/x")
+    t.assume("x held", ONE - x, relation, case=True)
+    half, r = constant(Fraction(1, 2)), scalar("1/x")
+    upper = Equation(Quotient(ONE, x), "≥", Fraction(1, 2) * ONE)
+    # were 1/x < 1/2, x (1/2 - 1/x) + (1 - x)/2 + 1/2 would be zero, and positive
+    products = [
+        SignProduct(Fraction(1), ("¬", "x > 0")),
+        *([SignProduct(Fraction(1, 2), ("x held",))] if relation == ">" else []),
+        SignProduct(Fraction(1, 2), ()),
+    ]
+    held = [] if relation == ">" else [Addend(Fraction(-1, 2), (), (), "x held", False, ())]
+    above = sign(upper, r - half, products, [use("1/x", -1), *held], name="above")
+    turned = Equation(Quotient(ONE, x), "≥", Fraction(-1, 2) * ONE)
+    products = [*products[:1], SignProduct(Fraction(1), ()), SignProduct(Fraction(1, 2), ("x > 0",))]
+    below = sign(turned, r + half, products, [use("1/x", -1)], name="below")
+    accepted(t, above, below)
+    limit = Equation(Limit(Fraction(1, 2) * ONE, x, Infinity()), "=", ZERO)
+    rejected(t, above, below, linked(limit, "squeeze", "above", "below"))
+
+
+def test_a_matrix_that_hides_what_moves():
+    t, _ = theory()
+    w = t.scalar("ω", nonnegative=True)
+    M = t.matrix("M", "n", "n")
+    t.define("M", M, w * Identity("n"))
+    t.atom("spectral", Det(M), name="det M")
+    rejected(t, same(Rate(Det(M), w), ZERO))
+    t, _ = theory()
+    w, V = t.scalar("ω", nonnegative=True), t.matrix("V", "n", "n", symmetric=True)
+    t.assume("V + ω > 0", V + w * Identity("n"), "≻", Zero("n", "n"))
+    t.inverse("X", V + w * Identity("n"), "n", symmetric=True, because="V + ω > 0")
+    X = (V + w * Identity("n")).inv
+    t.atom("spectral", Det(X), name="det X")
+    rejected(t, same(Rate(Det(X), w), ZERO))
+
+
 # ------------------------------------------------------------------------------------------------ size
 def nested(depth: int, wrap: Callable[[Term], Term], term: Term) -> Term:
     for _ in range(depth):
