@@ -18,7 +18,8 @@ from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Max, Power
 from derive.kernel import Rejected
 from derive.parameter import check_any_sign, check_logarithms, check_parameter, regular_logarithm
 from derive.real import scalar
-from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Total
+from derive.roots import check_instance, check_modulus
+from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero
 from derive.theory import spectrum, spectrum_half_plane, spectrum_poisson
 from derive.theory.spectrum_roots import on_axis
@@ -415,8 +416,6 @@ def test_an_instance_does_not_move_the_exceptions_with_the_parameter():
     t, w, r, c = running()
     b = t.parameter("β")
     t.generic("ω ≠ β", w - b, ZERO, w)
-    from derive.roots import check_instance
-
     lemma = Equation(Power(w - b, 2), "≥", ZERO)
     check_instance(Equation(Power(w - c, 2), "≥", ZERO), [lemma], t.reading())
     refused(check_instance, Equation(Power(w - r, 2), "≥", ZERO), [lemma], t.reading())
@@ -503,8 +502,19 @@ def test_a_function_at_a_point_depends_on_what_the_point_is():
     real = t.reading().real
     assert [v for v in ("ω", "y", "s") if real.varies("ln|f|", v)] == ["ω", "y"]
     for bad in (Sum((w, Product((j, y)))), Sum((x, Product((j, w)))), Sum((s, Product((j, y))))):
-        with pytest.raises(Rejected):
+        with pytest.raises(Rejected, match="stay what they are"):
             value(Log(Modulus(At(s + ONE, s, bad))), t.reading())
+
+
+def test_a_function_that_is_positive_on_the_axis_is_complex_elsewhere():
+    """f(s) = p(s) p(-s) is |p|^2 on the axis; at s0 its logarithm is not the sum of those of the distances."""
+    t = spectrum.theory()
+    s, root, i, m = (t.symbols[k] for k in ("s", "φ", "i", "m"))
+    f = Product((Roots(s, root, i, m), Roots(Neg(s), root, i, m)))
+    point = Sum((t.symbols["σ0"], Product((t.symbols["j"], t.symbols["ω0"]))))
+    statement = Equation(Log(At(f, s, point)), "=", ZERO)
+    with pytest.raises(Rejected, match="positive on the axis"):
+        check_modulus(statement, [Equation(f, "=", f)], t.reading())
 
 
 def test_infinity_is_where_quadrature_ends():
