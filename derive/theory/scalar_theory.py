@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Theory, declare
 from derive.functions import KINDS, Log, Quotient
-from derive.terms import MissingInverse, Reading, Symbol, Term, walk
+from derive.terms import Equation, MissingInverse, Reading, Symbol, Term, walk
 
 __all__ = ["ScalarTheory"]
 
@@ -38,8 +38,10 @@ class ScalarTheory(Theory):
 
     waits: dict[str, Wait] = field(default_factory=dict[str, Wait])
 
-    def settle(self, reading: Reading) -> Reading:
-        """Adopt every declaration that what is there allows, until nothing more comes."""
+    def settle(self, reading: Reading, learnt: Equation | None = None) -> Reading:
+        """Adopt every declaration that what is there allows, until nothing more comes; an equation brings nothing."""
+        if learnt is not None and learnt.relation == "=":
+            return reading
         if self.waits.keys() != self.declared.keys():
             self.waits = self._waits()
         before: frozenset[str] | None = None
