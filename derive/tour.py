@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -32,6 +32,7 @@ from derive.notes.model import (
     slug,
     with_sources,
 )
+from derive.notes.parts import anchors, parts
 from derive.notes.sliders import slider_page
 from derive.numeric.plant import Plant
 from derive.replay import Report, verify_file
@@ -64,11 +65,16 @@ class Chapter:
     report: Report
     document: Document
     seconds: float = 0.0
+    pages: Mapping[str, Document] = field(default_factory=dict[str, Document])
 
     @property
     def page(self) -> str:
-        """The page that holds it, none if it is the first one."""
-        return self.lecture.key if self.lecture.key in OWN_PAGE else ""
+        """The page on which it begins, none if it is the first one of the tour."""
+        return next(iter(self.pages), "")
+
+    def places(self) -> dict[str, str]:
+        """Return the page of each anchor."""
+        return {anchor: name for name, page in self.pages.items() for anchor in anchors(page.blocks)}
 
     @property
     def count(self) -> str:
@@ -134,10 +140,11 @@ def write_tour(
     progress("writing the pages")
     write_page(folder, "index", bind(chapters, worked_example(plant, validation, about)))
     for chapter in chapters:
-        if chapter.page:
-            write_page(folder, chapter.page, own_page(chapter))
+        for name, page in chapter.pages.items():
+            write_page(folder, name, page)
         if chapter.lecture.key == "scalar":
-            write(folder / "sliders.html", slider_page(chapter.report.outcomes, chapter.page or "index", "index"))
+            sliders = slider_page(chapter.report.outcomes, chapter.page or "index", "index", chapter.places())
+            write(folder / "sliders.html", sliders)
     return Summary(folder, tuple(chapters), plant.name, str(validation["verdict"]), perf_counter() - start)
 
 
@@ -152,7 +159,8 @@ def write_certificates(folder: Path, progress: Callable[[str], None] = lambda _:
         write(path, json.dumps(lecture_to_json(current), ensure_ascii=False, indent=1) + "\n")
         (report,) = verify_file(path)
         document = document_of(current, report.outcomes)
-        chapters.append(Chapter(current, report, document, perf_counter() - start))
+        pages = own_pages(document, key) if key in OWN_PAGE else {}
+        chapters.append(Chapter(current, report, document, perf_counter() - start, pages))
     return chapters
 
 
@@ -182,16 +190,18 @@ def reference(chapter: Chapter) -> list[Block]:
     return [Section(chapter.lecture.title, 1, slug(key)), Para(text)]
 
 
-def own_page(chapter: Chapter) -> Document:
-    """Return the page of a long lecture, with the way back."""
-    document = chapter.document
-    sources = (" · Source: ", *document.subtitle) if any(document.subtitle) else ()
-    return replace(document, subtitle=(Link("All lectures", "", "index"), *sources))
+def own_pages(document: Document, key: str) -> dict[str, Document]:
+    """Return the pages of a long lecture, each with the way back."""
+    sources = ("Source: ", *document.subtitle) if any(document.subtitle) else ()
+    there = replace(document, subtitle=sources)
+    back = Link("All lectures", "", "index")
+    return {name: replace(page, subtitle=(back, " · ", *page.subtitle)) for name, page in parts(there, key).items()}
 
 
 def findings(chapters: Iterable[Chapter]) -> list[Block]:
     """Return the table of what the sources print and what is true."""
-    notes = [(block, c.page) for c in chapters for block in c.document.blocks if isinstance(block, Note)]
+    pages = [item for c in chapters for item in (c.pages or {"": c.document}).items()]
+    notes = [(block, name) for name, page in pages for block in page.blocks if isinstance(block, Note)]
     rows: list[tuple[Inline, ...]] = [
         (
             (DOCUMENTS.get(note.source, ("", note.source))[1], f", ({note.number})" if note.number else ""),

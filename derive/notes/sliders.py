@@ -34,6 +34,9 @@ ABOUT = (
 )
 
 
+Proofs = tuple[str, Mapping[str, str]]  # page of the proofs, and that of each anchor where they are on several
+
+
 @dataclass(frozen=True)
 class Slider:
     """A range input: whole positions, which stand for multiples of 1/per or for powers of ten.
@@ -165,20 +168,23 @@ def _letter(name: str) -> Symbol:
 PANELS = (_continuous, _discrete)
 
 
-def slider_page(outcomes: Sequence[Outcome], proofs: str = "", back: str = "") -> str:
+def slider_page(
+    outcomes: Sequence[Outcome], proofs: str = "", back: str = "", places: Mapping[str, str] | None = None
+) -> str:
     """Return the page of sliders as HTML.
 
     Args:
         outcomes: what the replay of the scalar lecture said; the badges come from it.
         proofs: page of the scalar lecture, without suffix, to which the formulas link; none if empty.
         back: page to return to, without suffix; none if empty.
+        places: page of each anchor of the lecture, if it has several pages.
     """
     from derive.theory import lecture
 
     current = lecture("scalar")
     panels = [make(current.theory.symbols.__getitem__) for make in PANELS]
     complaints = _complaints(panels, frozenset(o.step for o in outcomes if o.accepted))
-    body = "\n".join(_section(panel, current, complaints, proofs) for panel in panels)
+    body = "\n".join(_section(panel, current, complaints, (proofs, places or {})) for panel in panels)
     subtitle = (Link("All lectures", "", back), " · ") if back else ()
     about = Link(current.title, "", proofs) if proofs else current.title
     return whole_page(
@@ -198,7 +204,7 @@ def script(panels: Sequence[Panel]) -> str:
     return "\n".join((*(formula(name).to_javascript() for name in names), resource("sliders.js")))
 
 
-def _section(panel: Panel, lecture: Lecture, complaints: Mapping[str, str], proofs: str) -> str:
+def _section(panel: Panel, lecture: Lecture, complaints: Mapping[str, str], proofs: Proofs) -> str:
     from derive.scalar.library import formula
 
     rows = [_definition(name, lecture, panel.key) for name in panel.definitions]
@@ -214,10 +220,12 @@ def _definition(name: str, lecture: Lecture, panel: str) -> Row:
     return Row(said.lhs, said.relation, said.rhs, slug(panel, "where", name), badge=declared.kind)
 
 
-def _row(formula: Formula, message: str, proofs: str) -> Row:
+def _row(formula: Formula, message: str, proofs: Proofs) -> Row:
     """Show a formula; it is proved if there is no complaint."""
     defined = f"defined: {formula.defined.replace('>=', '≥')}"
-    link = ("; ", Link("proof", slug("scalar", formula.step), proofs)) if proofs else ()
+    page, places = proofs
+    anchor = slug("scalar", formula.step)
+    link = ("; ", Link("proof", anchor, places.get(anchor, page))) if page else ()
     said = formula.statement
     return Row(
         said.lhs, said.relation, said.rhs, formula.name, badge="not proved" if message else "proved",
