@@ -52,6 +52,11 @@ def test_links_lead_from_page_to_page(document, write, suffix):
     assert crossing > 10
 
 
+def test_every_anchor_of_a_page_is_known(document):
+    shown = re.findall(r' id="([^"]+)"', "".join(map(block, document.blocks)))
+    assert list(anchors(document.blocks)) == shown
+
+
 def test_the_whole_document_is_still_one_page_elsewhere(document):
     assert document.title in html(document)
     assert "Part 2" not in html(document)
