@@ -287,9 +287,13 @@ class Theory:
         generic = frozenset(d.generic for d in self.declared.values() if isinstance(d, Declared) and d.generic)
         self._check_scalars()
         real = Real(
-            families=dict(self.families), arbitrary=frozenset(self.arbitrary), pending=self._pending(), generic=generic,
+            families=dict(self.families),
+            arbitrary=frozenset(self.arbitrary),
+            cases=self._cases(),
+            pending=self._pending(),
+            generic=generic,
             running=frozenset(self.running),
-        )  # fmt: skip
+        )
         reading = Reading(context, real=real)
         for name, images in self.maps.items():
             lowered = {self.symbols[letter].letter: lower(image, reading)[0][0] for letter, image in images.items()}
@@ -299,6 +303,11 @@ class Theory:
                     raise Rejected(f"the map {name} sends the symmetric {letter} to a matrix that is not")
             reading = replace(reading, maps={**reading.maps, name: lowered})
         return self.settle(reading)
+
+    def _cases(self) -> frozenset[str]:
+        """Return the names of the hypotheses that are not always in force."""
+        declared = [d for d in self.declared.values() if isinstance(d, (Declared, DeclaredFact)) and d.case]
+        return frozenset(d.name for d in declared)
 
     def _pending(self) -> frozenset[str]:
         """Return the scalars that stand for others: those defined, and atoms."""

@@ -7,7 +7,7 @@ installed theory, checks the steps in order and lets a proved step serve as a le
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Literal
 
@@ -179,6 +179,7 @@ def order_claim(statement: Equation, reading: Reading) -> Grid:
 
 def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     """Replay one step, or raise Rejected."""
+    reading = _in_force(step, reading, earlier)
     context, proof = reading.context, step.proof
     _check_variables(step, reading, earlier)
     parts = PARTS.get(step.rule, ("identities",))
@@ -226,17 +227,28 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
     nodes = [n for side in (step.statement.lhs, step.statement.rhs) for n in walk(side)]
     moving = {n.symbol.name for n in nodes if isinstance(n, (Limit, Rate, Start, Definite))}
     moving |= {TIME} if step.rule == "same rate" else set()
-    if not moving:
-        return
-    seen, waiting = set[str](), {*step.uses, *step.proof.relations()}
-    while waiting:
-        seen.add(name := waiting.pop())
+    for name in _below({*step.uses, *step.proof.relations()}, reading, earlier) if moving else ():
         if moving & reading.real.fixed.get(name, frozenset()):
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
+
+
+def _below(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
+    """Return the names, and all that they rest on: through steps, and the reasons of atoms."""
+    seen, waiting = set[str](), set(names)
+    while waiting:
+        seen.add(name := waiting.pop())
         if name in earlier:
             waiting |= {*earlier[name].uses, *earlier[name].proof.relations()} - seen
         elif name in reading.real.reasons:
             waiting |= {reading.real.reasons[name]} - seen
+    return seen
+
+
+def _in_force(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> Reading:
+    """Return the reading without the facts of cases that the step does not name; some rules look for facts."""
+    unnamed = reading.real.cases - _below({*step.uses, *step.proof.relations()}, reading, earlier)
+    facts = {name: fact for name, fact in reading.context.facts.items() if name not in unnamed}
+    return replace(reading, context=replace(reading.context, facts=facts))
 
 
 def _check_chain(step: Step, earlier: dict[str, Step]) -> None:

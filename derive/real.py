@@ -70,6 +70,7 @@ class Real:
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
     fixed: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # by a hypothesis, its name
     letters: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # what defines matrices
+    cases: frozenset[str] = frozenset()  # hypotheses that only the steps make which name them
     reasons: Mapping[str, str] = field(default_factory=dict[str, str])  # why atoms exist
     pending: frozenset[str] = frozenset()  # scalars that stand for others, once their declarations are taken up
     generic: frozenset[str] = frozenset()  # variables of which finitely many values are excepted by some facts

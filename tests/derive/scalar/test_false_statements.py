@@ -6,6 +6,7 @@ Each is the smallest that one gap would let through; the theories are satisfiabl
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -13,7 +14,22 @@ import pytest
 from derive.context import Theory
 from derive.derivation import Proof, Step, verify
 from derive.errors import InputError
-from derive.functions import PI, Abs, Arctan, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Root, Start, value
+from derive.functions import (
+    PI,
+    Abs,
+    Arctan,
+    Definite,
+    Exp,
+    Infinity,
+    Limit,
+    Log,
+    Power,
+    Quotient,
+    Rate,
+    Root,
+    Start,
+    value,
+)
 from derive.kernel import ANY, Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.parameter import check_any_sign
@@ -588,6 +604,18 @@ def test_a_matrix_that_hides_what_moves():
     X = (V + w * Identity("n")).inv
     t.atom("spectral", Det(X), name="det X")
     rejected(t, same(Rate(Det(X), w), ZERO))
+
+
+def test_a_case_that_a_limit_consults_is_named():
+    """e^(-at) tends to 0 for a > 0; where a = 0 it is 1."""
+    t, (time, a) = theory("t", "a")
+    t.assume("a > 0", a, ">", case=True)
+    t.assume("a = 0", a, "=", case=True)
+    t.atom("exp", Neg(a * time), name="decay")
+    step = same(Limit(Exp(Neg(a * time)), time, Infinity()), ZERO)
+    rejected(t, step)
+    rejected(t, replace(step, uses=("a = 0",)))
+    accepted(t, replace(step, uses=("a > 0",)))
 
 
 # ------------------------------------------------------------------------------------------------ size
