@@ -14,7 +14,6 @@ from derive.derivation import Lecture
 from derive.theory import (
     spectrum_bode,
     spectrum_bounds,
-    spectrum_circle,
     spectrum_cross,
     spectrum_discrete,
     spectrum_filter,
@@ -25,7 +24,6 @@ from derive.theory import (
     spectrum_roots,
     spectrum_special,
 )
-from derive.theory.scalar_theory import ScalarTheory
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum", "spectrum"
@@ -41,14 +39,13 @@ PARTS = (
     spectrum_special,
     spectrum_cross,
     spectrum_discrete,
-    spectrum_circle,
 )
 
 
 @cache
 def theory() -> Theory:
     """Return the theory ``spectrum``: the steady filter, generic s, roots of real polynomials."""
-    t = ScalarTheory(THEORY, "Frequency domain of the filter")
+    t = Theory(THEORY, "Frequency domain of the filter")
     for part in PARTS:
         part.declare(t)
     return t

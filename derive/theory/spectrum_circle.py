@@ -10,12 +10,17 @@ allowed, -1 is not: it is the image of infinity.
 
 from __future__ import annotations
 
+from functools import cache
+
 from derive.context import Theory
+from derive.derivation import Lecture
 from derive.functions import PI, Abs, Log, Max, Quotient
 from derive.spectral import ImaginaryPart, RealPart
-from derive.terms import Equation, Term
+from derive.terms import Equation, Glyph, Symbol, Term
+from derive.theory import spectrum_poisson, spectrum_roots
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
+from derive.theory.spectrum_builder import SpectrumBuilder
 from derive.theory.spectrum_poisson import (
     FOUR,
     TWO,
@@ -31,7 +36,30 @@ from derive.theory.spectrum_poisson import (
 )
 from derive.theory.spectrum_roots import SIDES, _shifted
 
+KEY, THEORY = "spectrum-dt", "spectrum-dt"
 UNIT = ["σ0 = 1", "ω0 = 0"]
+
+
+@cache
+def theory() -> Theory:
+    """Return the theory ``spectrum-dt``: one root, Poisson's formula, and the eigenvalues of a plant."""
+    t = Theory(THEORY, "Frequency domain in discrete time")
+    for part in (spectrum_roots, spectrum_poisson):
+        part.declare(t)
+    index, count = t.symbols["i"], t.symbols["m"]
+    t.roots("λ", index, count, Glyph("λ", sub="i"), of="A", meaning="eigenvalues of A")
+    declare(t)
+    return t
+
+
+@cache
+def lecture() -> Lecture:
+    """Return the lecture from one root on the axis to an eigenvalue and the circle, every step proved."""
+    b = SpectrumBuilder(theory(), KEY, "Eigenvalues and the unit circle", ("001",))
+    for part in (spectrum_roots, spectrum_poisson):
+        part.derive(b)
+    derive(b)
+    return b.lecture()
 
 
 # ------------------------------------------------------------------------------------------------ terms
@@ -52,9 +80,9 @@ def excess(t: Theory) -> Term:
     return square(a) + square(b) - ONE
 
 
-def image(t: Theory) -> tuple[Term, Term]:
+def image(t: Theory) -> tuple[Symbol, Symbol]:
     """Return the real and the imaginary part of (λ - 1)/(λ + 1)."""
-    return Quotient(excess(t), size(t)), Quotient(2 * parts(t)[1], size(t))
+    return t.symbols["u"], t.symbols["v"]
 
 
 def chord(t: Theory, side: int) -> Term:
@@ -79,6 +107,9 @@ def declare(t: Theory) -> None:
     t.assume("no eigenvalue at -1", size(t), ">", text="-1 is no eigenvalue", case=True)
     t.atom("reciprocal", size(t), "no eigenvalue at -1", "1/|1+λ|^2")
     t.atom("log", size(t), "no eigenvalue at -1", "ln |1+λ|^2")
+    for name, top in (("u", excess(t)), ("v", 2 * parts(t)[1])):
+        part = t.scalar(name, meaning=f"{'real' if name == 'u' else 'imaginary'} part of (λ - 1)/(λ + 1)")
+        t.define(name, part, Quotient(top, size(t)))
     (u, v), below = image(t), ONE + square(w)
     for sign, k in SIDES:
         t.generic(f"image{sign}", _shifted(w, v, k), u, w, "except at the image of an eigenvalue on the circle")
@@ -114,7 +145,7 @@ def derive(b: ScalarBuilder) -> None:
     """Derive the integral of one eigenvalue over the circle."""
     b.heading("The log-integral of an eigenvalue over the unit circle")
     b.say("With ω = tan(θ/2) Poisson's formula at s0 = 1 becomes one on the circle; let")
-    b.given(*UNIT, "no eigenvalue at -1", "image-", "image+")
+    b.given(*UNIT, "no eigenvalue at -1", "u", "v", "image-", "image+")
     _derive_distances(b)
     _derive_integrals(b)
     _derive_size(b)
@@ -160,7 +191,7 @@ def _derive_integrals(b: ScalarBuilder) -> None:
         ["Poisson lemma"],
     )
     G = Quotient(ONE, sigma) * log * turns(t)
-    by_antiderivative(b, "size", G, found["size"], PI * log, ["|σ0| = σ0"])
+    by_antiderivative(b, "size", G, found["size"], PI * log, ["|σ0| = σ0", "Π"])
     b.linked(
         "both: integral",
         Equation(half(t, found["both"]), "=", integral(t, Abs(u), v) + PI * log),

@@ -7,6 +7,7 @@ nothing.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 
 from derive.context import Theory
@@ -32,9 +33,9 @@ def kernel(t: Theory, side: int = -1) -> Quotient:
     return Quotient(t.symbols["σ0"], square(t.symbols["σ0"]) + square(shift(t, side)))
 
 
-def kernels(t: Theory) -> Term:
-    """Return the kernel and its mirror image."""
-    return kernel(t, -1) + kernel(t, 1)
+def kernels(t: Theory) -> Symbol:
+    """Return the sum of the kernel and its mirror image."""
+    return t.symbols["Π"]
 
 
 def near(t: Theory, a: Term, c: Term, side: int) -> Term:
@@ -95,6 +96,9 @@ def declare(t: Theory) -> None:
         t.atom("spectral", TimesArctan(shift(t, k), sigma), name=f"σ0 arctan{sign}")
     t.atom("spectral", TimesArctan(w0, sigma), name="σ0 arctan(0)")
     _read(t, square(sigma) + square(w0), "k(0)")
+    t.scalar("Π", meaning="Poisson's kernel and its mirror image")
+    t.symbols["Π"] = both = replace(t.symbols["Π"], show_args=("ω",))
+    t.define("Π", both, kernel(t, -1) + kernel(t, 1))
     for name in ("r", "ρ"):
         _declare_running(t, name)
     _declare_antiderivative(t)
@@ -160,6 +164,8 @@ def derive(b: ScalarBuilder) -> None:
     b.say("Let s0 = ", t.symbols["σ0"], " + j", t.symbols["ω0"], " be any point with")
     b.given("σ0 > 0")
     _derive_signs(b)
+    b.say("Poisson's kernel of the half plane and its mirror image add up to")
+    b.given("Π")
     _derive_antiderivative(b)
     _derive_rate(b)
     _derive_start(b)
@@ -230,7 +236,7 @@ def _derive_antiderivative(b: ScalarBuilder) -> None:
         b.state(f"H{sign} at zero", Equation(Limit(H, w, ZERO), "=", ZERO), "both functions are odd", [f"H{sign}"])
     g, value = rates(t, a)
     G = t.symbols["H-"] + t.symbols["H+"] - Quotient(FOUR, a * sigma) * turns(t)
-    by_antiderivative(b, "rate", G, g, value, ["rate of H-", "rate of H+", "|σ0| = σ0"])
+    by_antiderivative(b, "rate", G, g, value, ["rate of H-", "rate of H+", "|σ0| = σ0", "Π"])
 
 
 def by_antiderivative(b: ScalarBuilder, name: str, G: Term, g: Term, value: Term, using: Sequence[str]) -> None:
@@ -316,7 +322,9 @@ def _derive_lemma(b: ScalarBuilder) -> None:
         links,
     )
     log = 2 * Log(square(r))
-    by_antiderivative(b, "far root", Quotient(ONE, sigma) * log * turns(t), kernels(t) * log, PI * log, ["|σ0| = σ0"])
+    by_antiderivative(
+        b, "far root", Quotient(ONE, sigma) * log * turns(t), kernels(t) * log, PI * log, ["|σ0| = σ0", "Π"]
+    )
     b.linked(
         "lemma for r > 0",
         Equation(half(t, integrand(t, r, c)), "=", integral(t, r, c)),
