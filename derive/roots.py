@@ -376,6 +376,8 @@ def check_resolvent(statement: Equation, links: Links, reading: Reading) -> None
     match statement:
         case Equation(Limit(Trace(body), Symbol(name=name), Infinity()), "=", zero) if name == COMPLEX:
             ((poly,),) = lower(body, reading)
+            if poly.rows != poly.cols:
+                raise Rejected("a trace is that of a square matrix")
         case _:
             raise Rejected("it is about the limit of a trace")
     if value(zero, reading) != ZERO:

@@ -196,7 +196,6 @@ def square(limit: Term, place: World) -> bool:
     return matrix.shape[0] == matrix.shape[1]
 
 
-@pytest.mark.xfail(strict=True, reason="the rule on resolvents does not look at the type of what is under the trace")
 def test_a_trace_of_a_matrix_that_is_not_square_is_rejected():
     step, reading, earlier = next(row for row in walk("spectrum") if row[0].name == "the resolvent vanishes")
     limit = step.statement.lhs
