@@ -7,7 +7,7 @@ which it does with the reason why it is defined. Standard library only.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
@@ -537,12 +537,17 @@ def _check_bound(term: Definite, reading: Reading) -> None:
 
 def replaced(term: Term, old: Symbol, new: Term) -> Term:
     """Replace a symbol in a term."""
-    if term == old:
-        return new
+    return put(term, {old: new})
+
+
+def put(term: Term, images: Mapping[Term, Term]) -> Term:
+    """Put terms in the place of others; a symbol has nothing within."""
+    if term in images:
+        return images[term]
 
     def within(part: object) -> object:
         if isinstance(part, Term):
-            return replaced(part, old, new)
+            return put(part, images)
         return tuple(map(within, part)) if isinstance(part, tuple) else part
 
     if isinstance(term, Symbol):

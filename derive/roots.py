@@ -13,10 +13,23 @@ and tr(MP) >= 0 for M, P >= 0. resolvent: tr(X (sI - M)^-1 Y) tends to 0. Standa
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import fields, replace
+from dataclasses import fields
 from fractions import Fraction
 
-from derive.functions import Definite, Infinity, Limit, Log, Quotient, Rate, Start, point_of, square_of, total, value
+from derive.functions import (
+    Definite,
+    Infinity,
+    Limit,
+    Log,
+    Quotient,
+    Rate,
+    Start,
+    point_of,
+    put,
+    square_of,
+    total,
+    value,
+)
 from derive.kernel import Poly, Rejected, identity, parts
 from derive.real import AXIS, COMPLEX, FREQUENCY, TIME, UNIT, ZERO, reflect, scalar, scalars_of
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, Total
@@ -30,11 +43,11 @@ HALF = Fraction(1, 2)
 def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
     """Accept a step with terms in the place of parameters of which the theory assumes nothing."""
     (lemma,) = _exactly(1, links)
-    images: dict[Symbol, Term] = {}
+    images: dict[Term, Term] = {}
     _match(lemma, statement, images, reading)
-    if _put(lemma, images) != statement or not images:
+    if Equation(put(lemma.lhs, images), lemma.relation, put(lemma.rhs, images)) != statement or not images:
         raise Rejected("the statement is no instance of the step")
-    names, nodes = {s.name for s in images}, [n for side in _sides(lemma) for n in walk(side)]
+    names, nodes = {s.name for s in images if isinstance(s, Symbol)}, [n for side in _sides(lemma) for n in walk(side)]
     for symbol in (n for n in nodes if isinstance(n, Symbol)):
         if symbol not in images and (symbol.name in names or any(reading.real.varies(symbol.name, p) for p in names)):
             raise Rejected(f"{symbol.name} stands for something that depends on a parameter")
@@ -55,13 +68,13 @@ def check_instance(statement: Equation, links: Links, reading: Reading) -> None:
     _readable(statement, reading)
 
 
-def _match(pattern: Term | Equation, found: Term | Equation, images: dict[Symbol, Term], reading: Reading) -> None:
+def _match(pattern: Term | Equation, found: Term | Equation, images: dict[Term, Term], reading: Reading) -> None:
     if isinstance(pattern, Symbol) and pattern.name in reading.real.arbitrary and isinstance(found, Term):
         images.setdefault(pattern, found)
         return
     if type(pattern) is not type(found):
         return
-    for f in fields(pattern):
+    for f in fields(pattern):  # pyright: ignore[reportArgumentType]
         for one, two in zip(*(_terms(getattr(t, f.name)) for t in (pattern, found)), strict=False):
             _match(one, two, images, reading)
 
@@ -74,17 +87,6 @@ def _terms(item: object) -> list[Term]:
         if isinstance(item, tuple)
         else []
     )
-
-
-def _put(item: object, images: Mapping[Symbol, Term]) -> object:
-    """Replace symbols in a term or statement."""
-    if isinstance(item, Symbol):
-        return images.get(item, item)
-    if isinstance(item, tuple):
-        return tuple(_put(part, images) for part in item)
-    if isinstance(item, (Term, Equation)):
-        return replace(item, **{f.name: _put(getattr(item, f.name), images) for f in fields(item)})  # type: ignore[type-var]
-    return item
 
 
 def check_sum(statement: Equation, links: Links, reading: Reading) -> None:
@@ -188,7 +190,7 @@ def check_same_roots(statement: Equation, links: Links, reading: Reading) -> Non
                 if isinstance(point, Neg):
                     raise Rejected("the first product is read at s")
                 template, first = body, parts_of
-            elif _replaced(template, dict(zip(first, parts_of, strict=True))) != body:
+            elif put(template, dict(zip(first, parts_of, strict=True))) != body:
                 raise Rejected("the sums are of different functions")
             _check_function(body, root, reading)
     _readable(statement, reading)
@@ -207,26 +209,6 @@ def _check_function(template: Term, root: Symbol, reading: Reading) -> None:
         others = [y for y in reading.real.families.values() if y is not family]
         if any(reading.real.varies(s, p) for y in others for p in (y.real, y.imaginary)):
             raise Rejected("the function depends on other roots")
-
-
-def _replaced(term: Term, images: Mapping[Term, Term]) -> Term:
-    if term in images:
-        return images[term]
-
-    def within(part: object) -> object:
-        return (
-            _replaced(part, images)
-            if isinstance(part, Term)
-            else tuple(map(within, part))
-            if isinstance(part, tuple)
-            else part
-        )
-
-    return (
-        term
-        if isinstance(term, Symbol)
-        else replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})
-    )  # type: ignore[type-var]
 
 
 def check_modulus(statement: Equation, links: Links, reading: Reading) -> None:

@@ -195,16 +195,16 @@ def _check_argument(statement: Equation, links: Sequence[Equation], reading: Rea
     """
     match statement, links:
         case (Equation(Limit(f, x, Infinity()), "=", v), [Equation(a, "=", b)]) if f == a:
-            value(f, reading), value(b, reading)
+            _ = value(f, reading), value(b, reading)
             if value(Limit(b, x, Infinity()), reading) != value(v, reading) or _moves(v, x, reading):
                 raise Rejected("the limit of the equal function is another")
         case Equation(Log(u), "=", Log(v)), [Equation(a, "=", b)] if (u, v) == (a, b) or _same_place(u, v, a, b):
-            value(statement.lhs, reading), value(statement.rhs, reading)
+            _ = value(statement.lhs, reading), value(statement.rhs, reading)
         case (
             Equation(Definite(f, x, low, Infinity()), "=", Definite(g, y, bottom, Infinity())),
             [Equation(a, "=", b)],
         ) if (f, g, x, low) == (a, b, y, bottom):
-            value(statement.lhs, reading), value(statement.rhs, reading)
+            _ = value(statement.lhs, reading), value(statement.rhs, reading)
         case _:
             raise Rejected("the arguments are not what the link says")
 

@@ -225,9 +225,9 @@ class Reader:
 @cache
 def hints(cls: type) -> dict[str, Any]:
     """Return the resolved types of a dataclass's fields."""
-    names = {**vars(terms), **vars(functions), **vars(spectral), **vars(real), **vars(rules), **vars(derivation), **vars(kernel)}
-    module = next(m for m in (terms, functions, spectral, real, rules, derivation, kernel) if m.__name__ == cls.__module__)
-    return get_type_hints(cls, {**names, **vars(module)})
+    modules = terms, functions, spectral, real, rules, derivation, kernel
+    names = {name: item for module in modules for name, item in vars(module).items()}
+    return get_type_hints(cls, {**names, **vars(next(m for m in modules if m.__name__ == cls.__module__))})
 
 
 def step_to_json(step: Step, theory: Theory, latex: str, reason: str) -> dict[str, Any]:

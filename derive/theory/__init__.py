@@ -21,9 +21,10 @@ LECTURES = {
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
     "spectrum": "derive.theory.spectrum",
+    "spectrum-dt": "derive.theory.spectrum_circle",
     "duality": "derive.theory.duality",
 }
-OWN_PAGE = frozenset({"kalman-bucy", "scalar", "spectrum"})  # long: in the tour, each has a page beside the first one
+OWN_PAGE = frozenset({"kalman-bucy", "scalar", "spectrum", "spectrum-dt"})  # each has a page beside the tour's
 THEORIES = {
     "observer-ct": "derive.theory.observer",
     "covariance-ct": "derive.theory.covariance",
@@ -31,6 +32,7 @@ THEORIES = {
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
     "spectrum": "derive.theory.spectrum",
+    "spectrum-dt": "derive.theory.spectrum_circle",
     "duality": "derive.theory.duality",
     "lqr-dt": "derive.theory.regulator:discrete",
     "lqr-ct": "derive.theory.regulator:continuous",

@@ -25,7 +25,6 @@ from derive.theory import (
     spectrum_special,
 )
 from derive.theory.scalar_theory import ScalarTheory
-from derive.theory.scalar_theory import ScalarTheory
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum", "spectrum"
