@@ -100,7 +100,7 @@ def _continuous(symbol: Callable[[str], Symbol]) -> Panel:
         (
             "A state ", Equation(Dot(x), "=", A * x + w), " and an output ", Equation(y, "=", C * x + v),
             " with white noises of intensity ", W, " and ", V, "; ", P, " is the steady error covariance, ", K,
-            " the gain, and ", later, ", drawn as P(t), the covariance after a time ", symbol("t"),
+            " the gain, and ", later, " the covariance after a time ", symbol("t"),
             " from the start ", start, ".",
         ),
         ("g", "S"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from derive.context import Theory
 from derive.functions import Definite, Exp, Infinity, Limit, Quotient, Rate, Start
 from derive.terms import Equation, Glyph, Term
@@ -36,7 +38,8 @@ def declare(t: Theory) -> None:
         t.atom("reciprocal", denominator, f"denominator of {name}", f"1/D{sub}")
         D = t.scalar(f"D{sub}", Glyph("D", sub=sub), meaning="denominator of the solution")
         t.define(f"D{sub}", D, denominator)
-        P = t.scalar(f"P{sub}(t)", Glyph("P", sub=sub + "t"), meaning="error covariance after the time t")
+        P = t.scalar(f"P{sub}(t)", Glyph("P", sub=sub), meaning="error covariance after the time t")
+        t.symbols[P.name] = P = replace(P, show_args=("t",))
         t.define(f"P{sub}(t)", P, Quotient(top(A, W, S, start, h), D))
     t.assume("P1 >= P0", s["P1"], "≥", s["P0"], "the second start is at least the first", case=True)
     t.assume("S > 0", S, ">", text="the closed loop is stable", case=True)
