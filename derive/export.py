@@ -13,6 +13,20 @@ from typing import Any
 from derive.errors import InputError
 from derive.functions import is_scalar
 from derive.latex import latex
+from derive.spectral import (
+    At,
+    Conjugate,
+    Det,
+    Distance,
+    Entry,
+    ImaginaryPart,
+    Modulus,
+    RealPart,
+    Roots,
+    TimesArctan,
+    TimesLog,
+    Total,
+)
 from derive.terms import (
     Block,
     Equation,
@@ -56,11 +70,59 @@ def _numbers(statement: Equation) -> Any:
     """Return a statement about real scalars, an equation or an inequality."""
     import sympy
 
+    relations = {"=": sympy.Eq, ":=": sympy.Eq, "≥": sympy.Ge, ">": sympy.Gt, "≠": sympy.Ne}
+    return relations[statement.relation](_number(statement.lhs), _number(statement.rhs), evaluate=False)
+
+
+def _number(term: Term) -> Any:
     from derive.scalar.formula import real_expression
 
-    relations = {"=": sympy.Eq, ":=": sympy.Eq, "≥": sympy.Ge, ">": sympy.Gt, "≠": sympy.Ne}
-    left, right = real_expression(statement.lhs), real_expression(statement.rhs)
-    return relations[statement.relation](left, right, evaluate=False)
+    return real_expression(term, _spectral)
+
+
+def _spectral(term: Term) -> Any:
+    """Return a number of the frequency domain; roots are numbered by the index that they print."""
+    import sympy
+
+    match term:
+        case Det(body):
+            return sympy.Determinant(_matrix(body, shape(body)))
+        case Trace(body) | Entry(body):
+            return sympy.Trace(_matrix(body, shape(body)))
+        case RealPart(root):
+            return sympy.re(_root(root))
+        case ImaginaryPart(root):
+            return sympy.im(_root(root))
+        case Distance(point, Conjugate(root)):
+            return sympy.Abs(_number(point) - sympy.conjugate(_root(root))) ** 2
+        case Distance(point, Symbol() as root):
+            return sympy.Abs(_number(point) - _root(root)) ** 2
+        case Roots(point, root, index, count):
+            return sympy.Product(_number(point) - _root(root), (_index(index), 1, _number(count)))
+        case Total(body, index, count):
+            return sympy.Sum(_number(body), (_index(index), 1, _number(count)))
+        case Modulus(body):
+            return sympy.Abs(_number(body))
+        case At(body, symbol, point):
+            return sympy.Subs(_number(body), _number(symbol), _number(point))
+        case TimesLog(x, a):
+            return _number(x) * sympy.log(_number(x) ** 2 + _number(a) ** 2)
+        case TimesArctan(x, a):
+            return sympy.Abs(_number(a)) * sympy.atan(_number(x) / sympy.Abs(_number(a)))
+        case _:
+            raise InputError(f"{latex(term)}: expected a number")
+
+
+def _root(root: Symbol) -> Any:
+    import sympy
+
+    return sympy.IndexedBase(root.name, complex=True)[sympy.Symbol(root.glyph.sub, integer=True)]
+
+
+def _index(index: Symbol) -> Any:
+    import sympy
+
+    return sympy.Symbol(index.glyph.letter or index.name, integer=True)
 
 
 def shape(term: Term) -> tuple[str, str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from derive.derivation import Lecture, Step
@@ -215,16 +215,14 @@ def _same(one: Term, two: Term, reading: Reading) -> bool:
     return not claim.terms or prove_identity(claim, relations, list(reading.real.atoms), 2.0) is not None
 
 
-def real_expression(term: Term) -> Any:
-    """Return a term about scalars as a SymPy expression of real symbols."""
+def real_expression(term: Term, other: Callable[[Term], Any] | None = None) -> Any:
+    """Return a term about scalars as a SymPy expression of real symbols; ``other`` gives terms of other kinds."""
     import sympy
 
     from derive import functions as f
     from derive import terms as t
 
-    below = [
-        real_expression(child) for child in term.children() if not isinstance(term, (Limit, Definite, Rate, f.Start))
-    ]
+    whole: Callable[[Term], Any] = partial(real_expression, other=other)
     simple: Mapping[type[Term], Callable[..., Any]] = {
         t.Sum: lambda *a: sympy.Add(*a), t.Product: lambda *a: sympy.Mul(*a), t.Neg: lambda a: -a,
         f.Quotient: lambda a, b: a / b, f.Root: sympy.sqrt, f.Abs: sympy.Abs, f.Max: lambda a: sympy.Max(0, a),
@@ -239,17 +237,19 @@ def real_expression(term: Term) -> Any:
             return sympy.Rational(number.numerator, number.denominator)
         case t.Zero():
             return sympy.S.Zero
-        case f.Power(_, exponent):
-            return below[0] ** exponent
+        case f.Power(base, exponent):
+            return whole(base) ** exponent
         case Definite(body, symbol, lower, upper):
-            return sympy.Integral(
-                real_expression(body), (real_expression(symbol), real_expression(lower), real_expression(upper))
-            )
+            return sympy.Integral(whole(body), (whole(symbol), whole(lower), whole(upper)))
         case Limit(body, symbol, point):
-            return sympy.Limit(real_expression(body), real_expression(symbol), real_expression(point))
+            return sympy.Limit(whole(body), whole(symbol), whole(point))
         case f.Start(body, symbol):
-            return sympy.Subs(real_expression(body), real_expression(symbol), 0)
+            return sympy.Subs(whole(body), whole(symbol), 0)
         case Rate(body, symbol):
-            return sympy.Derivative(real_expression(body), real_expression(symbol))
+            return sympy.Derivative(whole(body), whole(symbol))
+        case _ if type(term) in simple:
+            return simple[type(term)](*map(whole, term.children()))
+        case _ if other is not None:
+            return other(term)
         case _:
-            return simple[type(term)](*below)
+            raise InputError(f"{type(term).__name__}: expected a term about real numbers")
