@@ -116,7 +116,8 @@ def _spectral(term: Term) -> Any:
 def _root(root: Symbol) -> Any:
     import sympy
 
-    return sympy.IndexedBase(root.name, complex=True)[sympy.Symbol(root.glyph.sub, integer=True)]
+    base: Any = sympy.IndexedBase(root.name, complex=True)
+    return base[sympy.Symbol(root.glyph.sub, integer=True)]
 
 
 def _index(index: Symbol) -> Any:
