@@ -10,7 +10,15 @@ from derive.spectral import At, Det, Entry, RealPart, Total
 from derive.terms import Equation, Glyph, Identity, Neg, Product, Term, Trace, Zero
 from derive.theory.scalar_continuous import ONE, ZERO
 from derive.theory.spectrum_builder import SpectrumBuilder
-from derive.theory.spectrum_filter import log_spectrum, output_cost, resolvent, spectrum_ratio, unstable
+from derive.theory.spectrum_filter import (
+    TRACES,
+    closed_loop,
+    log_spectrum,
+    output_cost,
+    resolvent,
+    spectrum_ratio,
+    unstable,
+)
 from derive.theory.spectrum_roots import SOURCE, axis, derive_same, over_roots, whole
 
 
@@ -143,6 +151,17 @@ def _derive_stable(b: SpectrumBuilder) -> None:
     )
     b.linked(
         "no unstable λ, summed", Equation(unstable(t), "=", Total(ZERO, i, m)), "sum over", "summed", ["no unstable λ"]
+    )
+    b.say(
+        "The integral is then the difference of the second coefficients of the monic characteristic polynomials of "
+        "closed and open loop, which are minus the traces:"
+    )
+    A, closed = t.symbols["A"], closed_loop(t)
+    b.state(
+        "integral by coefficients",
+        Equation(whole(b, log_spectrum(t)), "=", Neg(Trace(closed)) + Trace(A)),
+        "all eigenvalues are in the left half plane",
+        ["log-integral of Phi_y", "closed loop, summed", "modulus of λ, summed", "no unstable λ, summed", *TRACES[:2]],
     )
     b.state("signal and noise", Equation(Phi, "=", Phi_z + V), "definition", ["Phi_y", "Phi_z"])
     b.state(
