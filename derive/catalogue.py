@@ -19,6 +19,13 @@ DOCUMENTS = {
     "004": ("vander-velde-2004", "Vander Velde, MIT 16.322, Lecture 23 (2004)"),
 }
 
+DERIVED_IN = {
+    "000": ("observer",),
+    "001": ("kalman-bucy", "scalar", "spectrum"),
+    "002": ("luenberger",),
+    "004": ("covariance",),
+}  # the lectures that carry a source's equation numbers; no other one is built to list them
+
 
 @dataclass
 class Entry:
@@ -61,7 +68,7 @@ def document_key(name: str) -> str:
 def equations(document: str) -> list[Entry]:
     """Return the displayed equations of a source in order; unnumbered ones are u1, u2, ..."""
     found: dict[str, Entry] = {}
-    for key in LECTURES:
+    for key in DERIVED_IN[document]:
         current = lecture(key)
         for source, number, finding in _numbered(current):
             if (source or current.sources[0]) == document:

@@ -126,6 +126,11 @@ def test_a_wrong_formula_of_a_source_is_listed_as_refuted():
     assert {n for n, e in rows.items() if e.verdict == "refuted"} == false
 
 
+def test_every_lecture_that_carries_numbers_of_a_source_is_asked_for_them():
+    found = {(s or lecture(k).sources[0], k) for k in LECTURES for s, _, _ in catalogue._numbered(lecture(k))}
+    assert found == {(document, key) for document, keys in catalogue.DERIVED_IN.items() for key in keys}
+
+
 def test_equations_as_text():
     result = run("list", "--equations", "000")
     header, *rows = result.stdout.splitlines()
