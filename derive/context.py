@@ -359,7 +359,7 @@ class Theory:
     def _early(self, item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
         """Tell whether a declaration speaks of a scalar whose definition is not adopted yet."""
         if item.name not in self.speaks_of:
-            names = {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol) and n.scalar}
+            names = {n.name for t in terms_of(item) for n in walk(t) if isinstance(n, Symbol) and n.scalar}
             self.speaks_of[item.name] = frozenset(names)
         used = self.speaks_of[item.name]
         return bool(used) and any(
@@ -378,7 +378,8 @@ def _waits(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, readi
     return isinstance(item, DeclaredAtom) and bool(item.because) and item.because not in reading.context.facts
 
 
-def _terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> tuple[Term, ...]:
+def terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> tuple[Term, ...]:
+    """Return the terms that a declaration speaks of."""
     if isinstance(item, Declared):
         return item.statement.lhs, item.statement.rhs
     return (item.matrix,) if isinstance(item, DeclaredFact) else (item.of,)
@@ -414,7 +415,7 @@ def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, readi
     """
     if isinstance(item, (DeclaredInverse, DeclaredAtom)) or (isinstance(item, Declared) and item.generic):
         return frozenset()
-    nodes = [n for t in _terms_of(item) for n in walk(t)]
+    nodes = [n for t in terms_of(item) for n in walk(t)]
     found = reading.real.reached(n.name for n in nodes if isinstance(n, Symbol))
     found -= {name for f in reading.real.families.values() for name in (f.index, f.count)}
     if isinstance(item, DeclaredFact) or any(isinstance(n, (Det, Trace, Roots)) for n in nodes):
@@ -440,7 +441,7 @@ def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | Declared
     """
     if isinstance(item, DeclaredAtom):
         return
-    real, names = reading.real, {n.name for t in _terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
+    real, names = reading.real, {n.name for t in terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
     match item:
         case Declared(statement=Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero())) if item.generic:
             shift, width = value(x, reading) - scalar(item.generic), value(a, reading)

@@ -96,7 +96,10 @@ def check_sum(statement: Equation, links: Links, reading: Reading) -> None:
     if not isinstance(found, Total):
         raise Rejected("the left-hand side is not a sum")
     index, count = found.index, found.count
-    over: Callable[[Term], Term] = lambda body: Total(body, index, count)  # noqa: E731
+
+    def over(body: Term) -> Total:
+        return Total(body, index, count)
+
     match lemma:
         case Equation(Limit(body, x, point), "=", limit):
             wanted = Equation(Limit(over(body), x, point), "=", over(limit))

@@ -14,7 +14,7 @@ from typing import Any
 
 from derive.derivation import Lecture, Step
 from derive.errors import InputError
-from derive.functions import Definite, Exp, Limit, Log, Rate, replaced, value
+from derive.functions import Definite, Exp, Limit, Log, Rate, put, value
 from derive.kernel import Rejected
 from derive.scalar.program import Program
 from derive.terms import Equation, Number, Product, Reading, Symbol, Term, Zero
@@ -152,7 +152,7 @@ class Formula:
     def with_letters(self, term: Term) -> Term:
         """Write letters for the sequences in a term."""
         for sequence in self.sequences:
-            term = replaced(term, sequence.expression, sequence.letter)  # type: ignore[arg-type]
+            term = put(term, {sequence.expression: sequence.letter})
         return term
 
     def _check_sequence(self, sequence: Sequence, reading: Reading) -> None:

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Any
 
 from derive.errors import InputError
-from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root, replaced
+from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root, put
 from derive.terms import Equation, Neg, Number, Product, Sum, Symbol, Term, Zero
 
 __all__ = ["Branch", "Let", "Program"]
@@ -140,7 +140,7 @@ def _branch(branch: Branch, language: Language, indent: str) -> list[str]:
             kind = "power" if isinstance(term, Exp) else "rest"
             name = Symbol(kind + str(len(shared) + 1), scalar=True)
             shared.append(f"{language.constant} {name.name} = {_text(term, language)};")
-            body = replaced(body, term, name)  # type: ignore[arg-type]
+            body = put(body, {term: name})
     test = " && ".join(_test(c, None, language) for c in branch.conditions)
     value = f"return {_text(body, language)};"
     if not test:

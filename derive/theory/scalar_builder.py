@@ -189,8 +189,13 @@ class ScalarBuilder(Builder):
 
 
 def _reads(statement: Equation, reading: Reading) -> bool:
+    return readable(statement.lhs, reading) and readable(statement.rhs, reading)
+
+
+def readable(term: Term, reading: Reading) -> bool:
+    """Tell whether a term has a meaning as a number."""
     try:
-        _ = value(statement.lhs, reading), value(statement.rhs, reading)
+        value(term, reading)
     except Rejected:
         return False
     return True

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Theory, declare
+from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Theory, declare, terms_of
 from derive.functions import KINDS, Log, Quotient
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term, walk
 
@@ -69,17 +69,11 @@ class ScalarTheory(Theory):
 
 
 def _wait(name: str, item: Item, definitions: dict[str, str], atoms: dict[tuple[str, Term], set[str]]) -> Wait:
-    nodes = [node for term in _terms(item) for node in walk(term)]
+    nodes = [node for term in terms_of(item) for node in walk(term)]
     used = {definitions[n.name] for n in nodes if isinstance(n, Symbol) and n.name in definitions}
     wanted = {frozenset(atoms[key]) for node in nodes for key in _functions(node) if key in atoms}
     fact = item.because if isinstance(item, DeclaredAtom) else ""
     return Wait(fact, frozenset(used - {name}), tuple(names for names in wanted if name not in names))
-
-
-def _terms(item: Item) -> tuple[Term, ...]:
-    if isinstance(item, Declared):
-        return item.statement.lhs, item.statement.rhs
-    return (item.matrix,) if isinstance(item, DeclaredFact) else (item.of,)
 
 
 def _functions(node: Term) -> Iterator[tuple[str, Term]]:

@@ -8,13 +8,13 @@ from dataclasses import replace
 from derive.context import DeclaredFact
 from derive.derivation import Proof, Rule, Step, Text
 from derive.functions import Limit, is_scalar, value
-from derive.kernel import Poly, Rejected
+from derive.kernel import Poly
 from derive.kernel import Term as Addend
 from derive.real import scalars_of
 from derive.spectral import Entry
 from derive.terms import Equation, Reading, walk
 from derive.theory.builder import Builder
-from derive.theory.scalar_builder import ScalarBuilder
+from derive.theory.scalar_builder import ScalarBuilder, readable
 
 
 class SpectrumBuilder(ScalarBuilder):
@@ -58,10 +58,10 @@ class SpectrumBuilder(ScalarBuilder):
     def _limits(self, read: Sequence[Limit]) -> list[str]:
         """Return the steps without which limits are not known."""
         found: list[str] = []
-        for term in (n for n in read if self._readable(n, self.reading)):
+        for term in (n for n in read if readable(n, self.reading)):
             scalars = self._moving(term)
             near = [n for n, first in self._known(term) if n not in found and first <= scalars]
-            found += [n for n in near if not self._readable(term, self._without(n))]
+            found += [n for n in near if not readable(term, self._without(n))]
         return found
 
     def _known(self, term: Limit) -> Iterator[tuple[str, set[str]]]:
@@ -87,13 +87,6 @@ class SpectrumBuilder(ScalarBuilder):
         limits = {k: v for k, v in reading.real.limits.items() if known.terms.keys() != {(k[2], ())}}
         sums = tuple(k for k in reading.real.sums if k[2] != known)
         return replace(reading, real=replace(reading.real, limits=limits, sums=sums))
-
-    def _readable(self, term: Limit, reading: Reading) -> bool:
-        try:
-            value(term, reading)
-        except Rejected:
-            return False
-        return True
 
     def positive_number(
         self,

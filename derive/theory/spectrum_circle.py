@@ -26,7 +26,6 @@ from derive.theory.spectrum_poisson import (
     TWO,
     by_antiderivative,
     far,
-    half,
     integral,
     integrand,
     kernels,
@@ -34,7 +33,7 @@ from derive.theory.spectrum_poisson import (
     positive,
     turns,
 )
-from derive.theory.spectrum_roots import SIDES, _shifted
+from derive.theory.spectrum_roots import SIDES, half, shifted
 
 KEY, THEORY = "spectrum-dt", "spectrum-dt"
 UNIT = ["σ0 = 1", "ω0 = 0"]
@@ -88,7 +87,7 @@ def image(t: Theory) -> tuple[Symbol, Symbol]:
 def chord(t: Theory, side: int) -> Term:
     """Return (1 + ω^2) |e^{jθ} - λ|^2, or the same for the conjugate."""
     (a, b), w = parts(t), t.symbols["ω"]
-    return square(_shifted(ONE - a, w * b, side)) + square(_shifted(w * (ONE + a), b, side))
+    return square(shifted(ONE - a, w * b, side)) + square(shifted(w * (ONE + a), b, side))
 
 
 def circle(t: Theory) -> Term:
@@ -112,7 +111,7 @@ def declare(t: Theory) -> None:
         t.define(name, part, Quotient(top, size(t)))
     (u, v), below = image(t), ONE + square(w)
     for sign, k in SIDES:
-        t.generic(f"image{sign}", _shifted(w, v, k), u, w, "except at the image of an eigenvalue on the circle")
+        t.generic(f"image{sign}", shifted(w, v, k), u, w, "except at the image of an eigenvalue on the circle")
         t.atom("log", near(t, u, v, k), f"image{sign}", f"ln image{sign}")
         t.atom("log", far(t, Abs(u), v, k), f"far image{sign} > 0", f"ln far image{sign}")
         t.atom("log", far(t, Abs(sigma), w0, k), f"far centre{sign} > 0", f"ln far centre{sign}")
@@ -157,11 +156,11 @@ def _derive_distances(b: ScalarBuilder) -> None:
     (u, v), w, w0 = image(t), t.symbols["ω"], t.symbols["ω0"]
     rows = [("1+ω^2", ONE + square(w), [], [w]), ("4", FOUR, [], [])]
     rows += [
-        (f"far image{sign}", far(t, Abs(u), v, k), ["σ0 > 0", "|Re image| ≥ 0"], [_shifted(w0, v, k)])
+        (f"far image{sign}", far(t, Abs(u), v, k), ["σ0 > 0", "|Re image| ≥ 0"], [shifted(w0, v, k)])
         for sign, k in SIDES
     ]
     rows += [
-        (f"far centre{sign}", far(t, Abs(t.symbols["σ0"]), w0, k), ["σ0 > 0", "|σ0| ≥ 0"], [_shifted(w0, w0, k)])
+        (f"far centre{sign}", far(t, Abs(t.symbols["σ0"]), w0, k), ["σ0 > 0", "|σ0| ≥ 0"], [shifted(w0, w0, k)])
         for sign, k in SIDES
     ]
     rows += [("max(1,|λ|^2)", ONE + Max(excess(t)), ["max(0,|λ|^2-1) ≥ 0"], [])]

@@ -12,7 +12,7 @@ from derive.terms import Equation, Neg, Product, Sum, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 from derive.theory.spectrum_poisson import Row, far, half, integral, integrand, kernel, kernels, positive
-from derive.theory.spectrum_roots import HALF, QUARTER, SIDES, SOURCE, _pair, _shifted, on_axis
+from derive.theory.spectrum_roots import HALF, QUARTER, SIDES, SOURCE, _pair, on_axis, shifted
 
 
 # ------------------------------------------------------------------------------------------------ declarations
@@ -115,7 +115,7 @@ def poisson(t: Theory) -> Term:
 def _derive_family(b: ScalarBuilder, root: Symbol) -> None:
     t, re, im, name = b.theory, RealPart(root), ImaginaryPart(root), root.name
     rows: list[Row] = [
-        (f"m{sign} {name}", far(t, Abs(re), im, k), ["σ0 > 0", f"|Re {name}| ≥ 0"], [_shifted(t.symbols["ω0"], im, k)])
+        (f"m{sign} {name}", far(t, Abs(re), im, k), ["σ0 > 0", f"|Re {name}| ≥ 0"], [shifted(t.symbols["ω0"], im, k)])
         for sign, k in SIDES
     ]
     positive(b, rows)

@@ -12,12 +12,12 @@ from fractions import Fraction
 
 from derive.context import Theory
 from derive.derivation import Derived
-from derive.functions import PI, Abs, Definite, Infinity, Limit, Log, Quotient, Rate
+from derive.functions import PI, Abs, Infinity, Limit, Log, Quotient, Rate
 from derive.spectral import TimesArctan
 from derive.terms import Equation, Glyph, Neg, Number, Sum, Symbol, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
-from derive.theory.spectrum_roots import SIDES, _shifted
+from derive.theory.spectrum_roots import SIDES, half, shifted
 
 TWO, FOUR = Number(Fraction(2)), Number(Fraction(4))
 
@@ -25,7 +25,7 @@ TWO, FOUR = Number(Fraction(2)), Number(Fraction(4))
 # ------------------------------------------------------------------------------------------------ terms
 def shift(t: Theory, side: int) -> Term:
     """Return ω - ω0 or ω + ω0."""
-    return _shifted(t.symbols["ω"], t.symbols["ω0"], side)
+    return shifted(t.symbols["ω"], t.symbols["ω0"], side)
 
 
 def kernel(t: Theory, side: int = -1) -> Quotient:
@@ -40,12 +40,12 @@ def kernels(t: Theory) -> Symbol:
 
 def near(t: Theory, a: Term, c: Term, side: int) -> Term:
     """Return |jω - λ|^2 for the root λ = a + jc, or for its conjugate."""
-    return square(_shifted(t.symbols["ω"], c, side)) + square(a)
+    return square(shifted(t.symbols["ω"], c, side)) + square(a)
 
 
 def far(t: Theory, a: Term, c: Term, side: int) -> Term:
     """Return |s0 + conj λ|^2 for the root λ = a + jc, or |s0 + λ|^2."""
-    return square(t.symbols["σ0"] + a) + square(_shifted(t.symbols["ω0"], c, side))
+    return square(t.symbols["σ0"] + a) + square(shifted(t.symbols["ω0"], c, side))
 
 
 def integrand(t: Theory, a: Term, c: Term) -> Term:
@@ -73,11 +73,6 @@ def rates(t: Theory, a: Term) -> tuple[Term, Term]:
     low, high = (Quotient(2 * a, near(t, a, c, k)) for _, k in SIDES)
     bottom, top = (Quotient(2 * (t.symbols["σ0"] + a), far(t, a, c, k)) for _, k in SIDES)
     return kernels(t) * (low + high - rest), PI * (bottom + top - rest)
-
-
-def half(t: Theory, body: Term) -> Definite:
-    """Return the integral over the positive frequencies."""
-    return Definite(body, t.symbols["ω"], ZERO, Infinity())
 
 
 # ------------------------------------------------------------------------------------------------ declarations
@@ -133,14 +128,14 @@ def _declare_antiderivative(t: Theory) -> None:
     t.atom("spectral", TimesArctan(c, a), name="ρ arctan(0)")
     logs = {sign: Log(near(t, a, c, k)) - Log(square(sigma) + square(shift(t, k))) for sign, k in SIDES}
     for sign, k in SIDES:
-        t.atom("spectral", TimesArctan(_shifted(w, c, k), a), name=f"ρ arctan{sign}")
+        t.atom("spectral", TimesArctan(shifted(w, c, k), a), name=f"ρ arctan{sign}")
     for sign, k in SIDES:
-        gap = _shifted(w0, c, k)
+        gap = shifted(w0, c, k)
         t.generic(f"n{sign}", a - sigma, gap, a, "except where the root is the mirror image of s0")
         mirror = square(a - sigma) + square(gap)
         t.atom("reciprocal", mirror, f"n{sign}", f"1/n{sign}")
         low, high = (logs["-"], logs["+"]) if k < 0 else (_crossed(t, 1), _crossed(t, -1))
-        own, other = (Sum(tuple(TimesArctan(_shifted(w, x, j), y) for _, j in SIDES)) for x, y in ((w0, sigma), (c, a)))
+        own, other = (Sum(tuple(TimesArctan(shifted(w, x, j), y) for _, j in SIDES)) for x, y in ((w0, sigma), (c, a)))
         size = square(gap)
         H = t.scalar(f"H{sign}", Glyph("H", sub="−" if k < 0 else "+"), meaning="antiderivative")
         body = (
@@ -197,8 +192,8 @@ def _derive_signs(b: ScalarBuilder) -> None:
     for name in ("r", "ρ"):
         a, known = t.symbols[name], [f"{name} > 0"]
         rows.append((f"{name}^2", square(a), known, []))
-        rows += [(f"u{sign} {name}", near(t, a, c, k), known, [_shifted(w, c, k)]) for sign, k in SIDES]
-        rows += [(f"m{sign} {name}", far(t, a, c, k), ["σ0 > 0", *known], [_shifted(w0, c, k)]) for sign, k in SIDES]
+        rows += [(f"u{sign} {name}", near(t, a, c, k), known, [shifted(w, c, k)]) for sign, k in SIDES]
+        rows += [(f"m{sign} {name}", far(t, a, c, k), ["σ0 > 0", *known], [shifted(w0, c, k)]) for sign, k in SIDES]
     rows.append(("u(0) ρ", square(c) + square(t.symbols["ρ"]), ["ρ > 0"], [c]))
     positive(b, rows)
 
@@ -220,7 +215,7 @@ def _derive_antiderivative(b: ScalarBuilder) -> None:
         b.equal(f"|{name}| = {name}", Equation(Abs(x), "=", x), [f"|{name}| ≥ 0", f"{name} > 0"])
     for sign, k in SIDES:
         for name, re, im in ((f"k{sign}", sigma, w0), (f"u{sign} ρ", a, c)):
-            u = square(_shifted(w, im, k)) + square(re)
+            u = square(shifted(w, im, k)) + square(re)
             _squeeze(b, name, u, w, Neg(2 * im) if k < 0 else 2 * im, square(re) + square(im))
     for sign, k in SIDES:
         H, pairs = t.symbols[f"H{sign}"], [kernel(t, j) * Quotient(2 * a, near(t, a, c, -j * k)) for _, j in SIDES]
@@ -273,7 +268,7 @@ def _derive_rate(b: ScalarBuilder) -> None:
             Equation(gap, "≥", ZERO),
             "a quotient of squares",
             ["1/r > 0", f"1/u{sign} r > 0"],
-            squares=[_shifted(w, c, k)],
+            squares=[shifted(w, c, k)],
         )
     b.sign("decreasing", Equation(Neg(rates(t, r)[0]), "≥", ZERO), "a product", ["kernels > 0", "gap-", "gap+"])
 
@@ -284,8 +279,8 @@ def _derive_start(b: ScalarBuilder) -> None:
     r, c, sigma, w0, w = (t.symbols[k] for k in ("r", "β", "σ0", "ω0", "ω"))
     b.say("and vanishes far from the axis:")
     for sign, k in SIDES:
-        _squeeze(b, f"u{sign} r", near(t, r, c, k), r, ZERO, square(_shifted(w, c, k)))
-        _squeeze(b, f"m{sign} r", far(t, r, c, k), r, 2 * sigma, square(sigma) + square(_shifted(w0, c, k)))
+        _squeeze(b, f"u{sign} r", near(t, r, c, k), r, ZERO, square(shifted(w, c, k)))
+        _squeeze(b, f"m{sign} r", far(t, r, c, k), r, 2 * sigma, square(sigma) + square(shifted(w0, c, k)))
     for name, body in zip(("integrand", "value"), decaying(t, r), strict=True):
         b.state(f"the {name} vanishes", Equation(Limit(body, r, Infinity()), "=", ZERO), "term by term")
 
@@ -338,7 +333,7 @@ def _derive_lemma(b: ScalarBuilder) -> None:
     b.sign("increasing", Equation(rate, "≥", ZERO), "a product", ["kernels > 0", "r > 0", "1/u- r > 0", "1/u+ r > 0"])
     b.say("With |α| for r, and the limit where α = 0:")
     rows: list[Row] = [
-        (f"m{sign} |α|", far(t, Abs(alpha), c, k), ["σ0 > 0", "|α| ≥ 0"], [_shifted(t.symbols["ω0"], c, k)])
+        (f"m{sign} |α|", far(t, Abs(alpha), c, k), ["σ0 > 0", "|α| ≥ 0"], [shifted(t.symbols["ω0"], c, k)])
         for sign, k in SIDES
     ]
     positive(b, rows)

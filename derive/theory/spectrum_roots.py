@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -51,7 +51,7 @@ def declare(t: Theory) -> None:
         t.atom("reciprocal", variable, f"{name} > 0", f"1/{name}")
         t.atom("log", square(variable), f"{name}^2 > 0", f"ln {name}^2")
     for sign, shift in SIDES:
-        x = _shifted(w, b, shift)
+        x = shifted(w, b, shift)
         t.generic(f"distance{sign}", x, a, w, "except at the frequency of a root on the axis")
         _distance(t, square(x) + square(a), f"u{sign}", f"distance{sign}")
         t.atom("spectral", TimesLog(x, a), name=f"x ln u{sign}")
@@ -62,8 +62,8 @@ def declare(t: Theory) -> None:
     t.atom("spectral", TimesLog(b, a), name="β ln u(0)")
     t.atom("spectral", TimesArctan(b, a), name="arctan(0)")
     t.atom("improper", root_integrand(w, a, b), name="integral of a root")
-    low, high = (TimesLog(_shifted(w, b, k), a) for _, k in SIDES)
-    turns = [TimesArctan(_shifted(w, b, k), a) for _, k in SIDES]
+    low, high = (TimesLog(shifted(w, b, k), a) for _, k in SIDES)
+    turns = [TimesArctan(shifted(w, b, k), a) for _, k in SIDES]
     G = t.scalar("G", meaning="antiderivative")
     t.symbols["G"] = G = replace(G, show_args=("ω",))
     t.define("G", G, low + high - 2 * TimesLog(w, ZERO) + 2 * turns[0] + 2 * turns[1], "0 where a factor vanishes")
@@ -74,7 +74,8 @@ def _distance(t: Theory, u: Term, name: str, why: str) -> None:
     t.atom("log", u, why, f"ln {name}")
 
 
-def _shifted(w: Term, b: Term, sign: int) -> Term:
+def shifted(w: Term, b: Term, sign: int) -> Term:
+    """Return w + b or w - b."""
     return w + b if sign > 0 else w - b
 
 
@@ -94,15 +95,15 @@ def declare_family(t: Theory, root: Symbol, *signs: int) -> None:
     index, count = t.symbols[t.families[root.name].index], t.symbols[t.families[root.name].count]
     re, im, w, s, name = RealPart(root), ImaginaryPart(root), t.symbols["ω"], t.symbols["s"], root.name
     for sign, shift in SIDES:
-        t.generic(f"distance{sign} {name}", _shifted(w, im, shift), re, w, "except at the frequency of a root")
-        t.atom("log", square(_shifted(w, im, shift)) + square(re), f"distance{sign} {name}", f"ln u{sign} {name}")
+        t.generic(f"distance{sign} {name}", shifted(w, im, shift), re, w, "except at the frequency of a root")
+        t.atom("log", square(shifted(w, im, shift)) + square(re), f"distance{sign} {name}", f"ln u{sign} {name}")
         t.atom(
             "spectral",
-            Total(Log(square(_shifted(w, im, shift)) + square(re)), index, count),
+            Total(Log(square(shifted(w, im, shift)) + square(re)), index, count),
             name=f"sum ln u{sign} {name}",
         )
     for shift in signs:
-        x, key = _shifted(s, re, -shift), f"u(s){'' if shift > 0 else '-'} {name}"
+        x, key = shifted(s, re, -shift), f"u(s){'' if shift > 0 else '-'} {name}"
         t.generic(f"distance {key}", x, im, s, "except at a real root")
         t.atom("log", square(x) + square(im), f"distance {key}", f"ln {key}")
         t.atom("spectral", Total(Log(square(x) + square(im)), index, count), name=f"sum ln {key}")
@@ -162,11 +163,11 @@ def _derive_root(b: ScalarBuilder) -> None:
     b.say("Let ", a, " + j", c, " be any root. With its conjugate it contributes to the logarithm of a modulus")
     b.given("ω > 0")
     b.sign("ω^2 > 0", Equation(square(w), ">", ZERO), "a square", ["ω > 0"])
-    G, turns = t.symbols["G"], [TimesArctan(_shifted(w, c, k), a) for _, k in SIDES]
+    G, turns = t.symbols["G"], [TimesArctan(shifted(w, c, k), a) for _, k in SIDES]
     b.say("An antiderivative, continuous also at the frequency of a root on the axis:")
     b.given("G")
     b.state("antiderivative", Equation(Rate(G, w), "=", root_integrand(w, a, c)), "differentiate")
-    ratios = {sign: Log(square(_shifted(w, c, k)) + square(a)) - Log(square(w)) for sign, k in SIDES}
+    ratios = {sign: Log(square(shifted(w, c, k)) + square(a)) - Log(square(w)) for sign, k in SIDES}
     for sign, k in SIDES:
         _derive_tail(b, w, a, c, sign, k)
     far = w * ratios["-"] + w * ratios["+"] - c * ratios["-"] + c * ratios["+"] + 2 * turns[0] + 2 * turns[1]
@@ -185,19 +186,19 @@ def _derive_root(b: ScalarBuilder) -> None:
 
 def _derive_tail(b: ScalarBuilder, w: Symbol, a: Symbol, c: Symbol, sign: str, k: int) -> None:
     """Derive the limits of ln(u/ω²) and of ω ln(u/ω²), with u = (ω ± β)² + α²."""
-    u, slope, size = square(_shifted(w, c, k)) + square(a), 2 * c, square(a) + square(c)
+    u, slope, size = square(shifted(w, c, k)) + square(a), 2 * c, square(a) + square(c)
     ratio, shift = Log(u) - Log(square(w)), slope if k > 0 else -slope
     up, down, name = f"ln u{sign} - ln ω^2 ≤", f"ln ω^2 - ln u{sign} ≤", f" ({sign}β)"
-    above = _shifted(Quotient(size, square(w)), Quotient(slope, w), k)
-    below = Neg(Quotient(_shifted(size, slope * w, k), u))
+    above = shifted(Quotient(size, square(w)), Quotient(slope, w), k)
+    below = Neg(Quotient(shifted(size, slope * w, k), u))
     b.sign("above" + name, Equation(above, "≥", ratio), "ln x ≤ x - 1", [up])
     b.sign("below" + name, Equation(below, "≥", -ratio), "ln x ≤ x - 1", [down])
     bounds = ["above" + name, "below" + name]
     b.linked(
         "logarithm" + name, Equation(Limit(ratio, w, Infinity()), "=", ZERO), "squeeze", "both bounds vanish", bounds
     )
-    rest = _shifted((3 * square(c) - square(a)) * w, slope * size, k)
-    gap, turned = _shifted(w * ratio, slope, -k), _shifted(-(w * ratio), slope, k)
+    rest = shifted((3 * square(c) - square(a)) * w, slope * size, k)
+    gap, turned = shifted(w * ratio, slope, -k), shifted(-(w * ratio), slope, k)
     bounds = ["above, times ω" + name, "below, times ω" + name]
     b.sign(bounds[0], Equation(Quotient(size, w), "≥", gap), "the first bound", [up, "ω > 0"])
     b.sign(bounds[1], Equation(Quotient(rest, u), "≥", turned), "the second bound", [down, "ω > 0"])
@@ -263,9 +264,13 @@ def _instance(b: ScalarBuilder, name: str, one: Equation, lemma: str, i: Symbol,
 def derive_root(b: ScalarBuilder, root: Symbol) -> None:
     """Put each root of a family into the root lemma."""
     w, re, im = b.theory.symbols["ω"], RealPart(root), ImaginaryPart(root)
-    half = Definite(root_integrand(w, re, im), w, ZERO, Infinity())
+    integral = half(b.theory, root_integrand(w, re, im))
     b.linked(
-        f"root lemma of {root.name}", Equation(half, "=", 2 * PI * Abs(re)), "instance", "for each root", ["root lemma"]
+        f"root lemma of {root.name}",
+        Equation(integral, "=", 2 * PI * Abs(re)),
+        "instance",
+        "for each root",
+        ["root lemma"],
     )
 
 
@@ -277,7 +282,7 @@ def scaled(number: Fraction, term: Term) -> Term:
 def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles: Symbol, by_roots: str) -> Step:
     """Derive (1/2π) ∫ ln|f(jω)| dω = ½ Σ|Re zeros| - ½ Σ|Re poles| from ``by_roots``; twice that for f = |g|^2."""
     t, part = b.theory, weight(log)
-    w, i, m = (t.symbols[k] for k in ("ω", "i", "m"))
+    i, m = t.symbols["i"], t.symbols["m"]
     sums = {r.name: [Total(log, i, m) for log in _both(t, r)] for r in (zeros, poles)}
     one = scaled(2 * part, sums[zeros.name][0]) - scaled(2 * part, sums[poles.name][0])
     b.linked(f"ln {name} on the axis", Equation(log, "=", one), "modulus", "the modulus of a product", [by_roots])
@@ -294,28 +299,27 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
         [f"ln {name} on the axis", *conjugates],
     )
     value = 2 * PI * Abs(RealPart(zeros)) - 2 * PI * Abs(RealPart(poles))
-    half: Callable[[Term], Definite] = lambda body: Definite(body, w, ZERO, Infinity())  # noqa: E731
     b.linked(
-        f"one root of {name}", Equation(half(pair), "=", value), "linear", "a zero less a pole",
+        f"one root of {name}", Equation(half(t, pair), "=", value), "linear", "a zero less a pole",
         [f"root lemma of {r.name}" for r in (zeros, poles)],
     )  # fmt: skip
     b.linked(
         f"roots of {name}",
-        Equation(half(even), "=", Total(value, i, m)),
+        Equation(half(t, even), "=", Total(value, i, m)),
         "sum over",
         "summed over the roots",
         [f"one root of {name}"],
     )
     b.linked(
         f"weighted roots of {name}",
-        Equation(half(part * even), "=", part * Total(value, i, m)),
+        Equation(half(t, part * even), "=", part * Total(value, i, m)),
         "linear",
         "times a number",
         [f"roots of {name}"],
     )
     b.linked(
         f"half of the axis of {name}",
-        Equation(half(log), "=", half(part * even)),
+        Equation(half(t, log), "=", half(t, part * even)),
         "same argument",
         "the same integrand",
         [f"ln {name}, even"],
@@ -330,10 +334,9 @@ def derive_integral(b: ScalarBuilder, name: str, log: Term, zeros: Symbol, poles
 
 def derive_same(b: ScalarBuilder, name: str, new: Log, old: Log, link: str) -> None:
     """Derive that the logarithms of one function, written in two ways, are the same, and so are their integrals."""
-    w = b.theory.symbols["ω"]
     first, second = f"logarithm: {name}", f"integral: {name}"
     b.linked(first, Equation(new, "=", old), "same argument", "the same function", [link])
-    halves = [Definite(log, w, ZERO, Infinity()) for log in (new, old)]
+    halves = [half(b.theory, log) for log in (new, old)]
     b.linked(second, Equation(halves[0], "=", halves[1]), "same argument", "the same integrand", [first])
 
 
@@ -341,6 +344,11 @@ def over_roots(t: Theory, root: Symbol, point: Term) -> Roots:
     """Return the product of (point - root) over a family of roots."""
     family = t.families[root.name]
     return Roots(point, root, t.symbols[family.index], t.symbols[family.count])
+
+
+def half(t: Theory, body: Term) -> Definite:
+    """Return the integral over the positive frequencies."""
+    return Definite(body, t.symbols["ω"], ZERO, Infinity())
 
 
 def whole(b: ScalarBuilder, body: Term) -> Term:
