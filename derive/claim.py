@@ -1,4 +1,4 @@
-"""Verdicts on claims, and the counterexample that carries a refutation. Standard library only."""
+"""Claims, verdicts, and the counterexample that carries a refutation. Standard library only."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
 
-__all__ = ["Counterexample", "Entries", "Verdict"]
+__all__ = ["Answer", "Claim", "Counterexample", "Entries", "Nearest", "Verdict"]
 
 Entries = tuple[tuple[Fraction, ...], ...]  # a matrix, row by row
 
@@ -61,6 +61,56 @@ class Counterexample:
             groups.setdefault(text, []).append(name)
         values = ", ".join(" = ".join([*names, text]) for text, names in groups.items())
         return f"{values}: left {show(self.left)}, right {show(self.right)}"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A formula somebody wrote, and what it is read in.
+
+    ``theory`` is empty if it is to be guessed; ``assume`` are relations in LaTeX; ``scalar`` reads every dimension as
+    1. ``file``, ``line`` and ``name`` (a label or number such as 31.10) say where it stands.
+    """
+
+    latex: str
+    theory: str = ""
+    assume: tuple[str, ...] = ()
+    scalar: bool = False
+    id: str = ""
+    file: str = ""
+    line: int = 0
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The nearest true formula to a refuted one: LaTeX, proved, and the edit in words."""
+
+    latex: str
+    edit: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What can be said of a claim, and why.
+
+    ``method`` is the authority: "kernel" (a certificate replays), "sign argument" (replayed without z3), "z3", "exact
+    instance", "undefined", "types", "theorem of <lecture>", "enclosures". ``hypotheses_not_needed`` are those of the
+    theory that bear on the claim and that its proof does not use; ``added`` those of no source that it needs;
+    ``assumed`` what a user declared as given. ``notes`` are sentences for the reader: every gain, conventions, common
+    mistakes. ``certificate`` is JSON data that `derive verify` replays.
+    """
+
+    verdict: Verdict
+    method: str = ""
+    hypotheses_used: tuple[str, ...] = ()
+    hypotheses_not_needed: tuple[str, ...] = ()
+    hypotheses_added: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
+    counterexample: Counterexample | None = None
+    needed: Mapping[str, Counterexample] = field(default_factory=dict[str, Counterexample])  # without that hypothesis
+    nearest: Nearest | None = None
+    notes: tuple[str, ...] = ()
+    certificate: Mapping[str, object] | None = None
 
 
 def show(value: Entries) -> str:

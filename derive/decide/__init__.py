@@ -1,0 +1,1 @@
+"""Decide claims: proved, refuted, supported or undecided, with the reason."""

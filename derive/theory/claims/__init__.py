@@ -1,0 +1,1 @@
+"""Theories as claims are read in them, by key."""
