@@ -51,8 +51,8 @@ from derive.terms import (
 Rule = Literal[
     "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
     "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
-    "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "trace of roots", "determinant", "exchange",
-    "positive", "resolvent", "single", "parameter", "any sign", "logarithms",
+    "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "mirrored", "trace of roots", "determinant",
+    "exchange", "positive", "resolvent", "single", "parameter", "any sign", "logarithms",
 ]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 PARTS: Mapping[str, tuple[str, ...]] = {

@@ -20,6 +20,7 @@ from derive.real import (
     INFINITY,
     ONE,
     ORIGIN,
+    ROUND,
     SIGNS,
     TIME,
     UNIT,
@@ -44,6 +45,7 @@ from derive.spectral import (
     Det,
     Distance,
     Entry,
+    Growth,
     ImaginaryPart,
     Modulus,
     RealPart,
@@ -69,6 +71,7 @@ from derive.terms import (
 )
 
 PI = Symbol(CIRCLE, scalar=True)
+TURN = Product((Symbol(UNIT, scalar=True), Symbol(FREQUENCY, scalar=True)))  # jω
 
 
 @dataclass(frozen=True)
@@ -170,6 +173,9 @@ class Definite(Term):
 
 
 OF_MATRIX = (Det, Trace, Entry)  # numbers that a matrix has
+UNITY, BELOW = Number(Fraction(1)), Sum((Number(Fraction(1)), Power(TURN.factors[1], 2)))  # 1 and 1 + ω^2
+ANGLE = Exp(TURN)  # the point of the unit circle at the angle ω
+ON_CIRCLE = Quotient(Sum((UNITY, TURN)), Sum((UNITY, Neg(TURN))))  # the one at the angle 2 arctan ω
 
 
 def is_scalar(statement: Equation) -> bool:
@@ -222,6 +228,8 @@ def value(term: Term, reading: Reading) -> Poly:
             return _spectral(term, reading)
         case Log(Quotient(top, bottom)):
             return value(Log(top), reading) - value(Log(bottom), reading)
+        case Log(Distance(point, root)) if point == ON_CIRCLE:
+            return value(Log(_chord(root)), reading)
         case Root(body) | Abs(body) | Max(body) | Exp(body) | Log(body) | Arctan(body):
             return scalar(_atom(term, value(body, reading), real))
         case Rate(body, symbol):
@@ -276,6 +284,11 @@ def _spectral(term: Term, reading: Reading) -> Poly:
             return scalar(_family(root, reading).real)
         case ImaginaryPart(root):
             return scalar(_family(root, reading).imaginary)
+        case Growth(root):
+            size = Sum((Power(RealPart(root), 2), Power(ImaginaryPart(root), 2)))
+            return value(Log(Sum((UNITY, Max(Sum((size, Neg(UNITY))))))), reading).scale(Fraction(1, 2))
+        case Distance(point, root) if point == ON_CIRCLE:
+            return value(_chord(root), reading)
         case Distance(point, root):
             return _distance(point, root, reading)
         case Total(body, index, count):
@@ -327,7 +340,7 @@ def spectral_atom(name: str, term: Term, reading: Reading) -> Atom:
 
 
 def _variable(symbol: Symbol, point: Term) -> str:
-    """Return the real variable of a point: ω on the imaginary axis, s itself along the reals."""
+    """Return the real variable of a point: ω on the imaginary axis and on the circle, s itself along the reals."""
     if symbol.name != COMPLEX:
         raise Rejected("a function is taken at a point of its variable s")
     match point:
@@ -335,6 +348,8 @@ def _variable(symbol: Symbol, point: Term) -> str:
             return COMPLEX
         case Product((Symbol() as j, Symbol() as w)) if (j.name, w.name) == AXIS:
             return FREQUENCY
+        case Quotient() if point == ON_CIRCLE:
+            return ROUND
         case Sum((Symbol(scalar=True, name=x), Product((Symbol() as j, Symbol(scalar=True, name=y))))) if (
             j.name == AXIS[0]
         ):
@@ -342,7 +357,7 @@ def _variable(symbol: Symbol, point: Term) -> str:
                 raise Rejected("a point of the plane has a real and an imaginary part that stay what they are")
             return f"{x} {y}"
         case _:
-            raise Rejected("a function is taken on the imaginary axis, along the reals, or at a point x + jy")
+            raise Rejected("a function is taken on the axis or the unit circle, along the reals, or at a point x + jy")
 
 
 def _distance(point: Term, root: Term, reading: Reading) -> Poly:
@@ -361,6 +376,17 @@ def _distance(point: Term, root: Term, reading: Reading) -> Poly:
         case _:
             raise Rejected("a distance is taken on the imaginary axis, or along the reals")
     return along * along + across * across
+
+
+def _chord(root: Term) -> Quotient:
+    """Return |(1 + jω)/(1 - jω) - λ|^2 = |(1 - λ) + jω (1 + λ)|^2 / (1 + ω^2) for λ = a + jb, or for its conjugate."""
+    symbol = root.root if isinstance(root, Conjugate) else root
+    if not isinstance(symbol, Symbol):
+        raise Rejected("a distance is that to a root of a family")
+    a, b = RealPart(symbol), Neg(ImaginaryPart(symbol)) if isinstance(root, Conjugate) else ImaginaryPart(symbol)
+    w, minus = TURN.factors[1], Neg(b)
+    along, across = Sum((UNITY, Neg(a), Product((w, minus)))), Sum((Product((w, Sum((UNITY, a)))), minus))
+    return Quotient(Sum((Power(along, 2), Power(across, 2))), BELOW)
 
 
 def _family(root: Symbol, reading: Reading) -> Family:
@@ -506,6 +532,8 @@ def point_of(term: Term) -> str:
 
 
 def _integral(term: Definite, reading: Reading) -> Poly:
+    if (term.lower, term.upper) == (Neg(PI), PI):
+        term = around(term, reading)
     if (point_of(term.lower), point_of(term.upper)) == (ORIGIN, "t"):
         assert isinstance(term.upper, Symbol)
         variable(term.upper, reading)
@@ -523,6 +551,23 @@ def _integral(term: Definite, reading: Reading) -> Poly:
     if name is None or variable(term.symbol, reading) != FREQUENCY or not (whole or bounds == (ORIGIN, INFINITY)):
         raise MissingInverse("an improper integral that is not declared")
     return scalar(name).scale(2 if whole else 1)
+
+
+def around(term: Definite, reading: Reading) -> Definite:
+    """Return the integral of F(e^{jω}) over -π < ω < π as one over the axis, by the variable tan(ω/2).
+
+    ∫ F(e^{jω}) dω = ∫ 2/(1 + ω^2) F((1 + jω)/(1 - jω)) dω over the axis
+
+    The tangent takes (-π, π) to the axis one to one, and so does its derivative not vanish; e^{jω} becomes
+    (1 + jω)/(1 - jω). The rule reads F by its argument: the integrand has ω in e^{jω} and nowhere else.
+    """
+    others = {n.name for n in walk(put(term.body, {ANGLE: UNITY})) if isinstance(n, Symbol)}
+    if variable(term.symbol, reading) != FREQUENCY or any(reading.real.varies(n, FREQUENCY) for n in others):
+        raise Rejected(f"around the circle {FREQUENCY} is the angle, and the integrand a function of the point alone")
+    weight = Quotient(Number(Fraction(2)), BELOW)
+    return replace(
+        term, body=Product((weight, put(term.body, {ANGLE: ON_CIRCLE}))), lower=Neg(Infinity()), upper=Infinity()
+    )
 
 
 def _check_bound(term: Definite, reading: Reading) -> None:

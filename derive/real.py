@@ -23,6 +23,7 @@ FREQUENCY = "ω"  # the variable of improper integrals
 TIME = "t"  # the variable of integrals from 0
 COMPLEX, UNIT = "s", "j"  # a generic complex number, and the imaginary unit
 AXIS = (UNIT, FREQUENCY)  # the factors of a point on the imaginary axis
+ROUND = " ".join(AXIS)  # what a function at the point (1 + jω)/(1 - jω) of the unit circle is taken over
 CIRCLE = "π"  # the scalar that stands for the circle's number
 RESERVED = frozenset({FREQUENCY, TIME, COMPLEX, UNIT, CIRCLE})  # scalars to which the rules give a meaning
 MATRIX = ("det", "trace")  # atoms of a matrix polynomial
@@ -383,8 +384,8 @@ def reflect(poly: Poly, variable: str, real: Real) -> Poly:
         if name == variable:
             return -scalar(name)
         atom = real.atoms.get(name)
-        if atom is not None and atom.kind in LOGARITHMS and variable == FREQUENCY == atom.over:
-            return scalar(name)  # |f(-jω)| = |f(jω)|, the coefficients of f are real
+        if atom is not None and atom.kind in LOGARITHMS and variable == FREQUENCY and atom.over in (FREQUENCY, ROUND):
+            return scalar(name)  # f takes conjugate values at conjugate points, its coefficients are real
         if atom is None or atom.kind not in EVERYWHERE:
             raise Rejected(f"{name} is not even in {variable}")
         found = real.find(atom.kind, reflect(atom.of, variable, real), atom.by, atom.over)

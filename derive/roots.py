@@ -5,7 +5,8 @@ Each rule takes a statement and the steps it is linked to, and accepts or raises
 instance: a step about arbitrary parameters, with others in their place. sum over: a step that holds for every index,
 summed. conjugate: the roots of a real polynomial may be replaced by their conjugates. same roots: equal products over
 roots have equal sums over roots. linear: the sum or difference of two improper integrals. modulus: ln |f| where f is a
-quotient of products over roots. roots' trace: tr M is the sum of the real parts of the eigenvalues. exchange:
+quotient of products over roots. mirrored: ln f on the unit circle, where f is made of det(sI - M) and det(I - sM), by
+ln |det(sI - M)|. roots' trace: tr M is the sum of the real parts of the eigenvalues. exchange:
 det(I + XY) = det(I + YX). single: a matrix with one row and column is its determinant. positive: det M > 0 for M > 0,
 and tr(MP) >= 0 for M, P >= 0. resolvent: tr(X (sI - M)^-1 Y) tends to 0. Standard library only.
 """
@@ -17,6 +18,7 @@ from dataclasses import fields
 from fractions import Fraction
 
 from derive.functions import (
+    ON_CIRCLE,
     Definite,
     Infinity,
     Limit,
@@ -31,7 +33,7 @@ from derive.functions import (
     value,
 )
 from derive.kernel import Poly, Rejected, identity, parts
-from derive.real import AXIS, COMPLEX, FREQUENCY, TIME, UNIT, ZERO, reflect, scalar, scalars_of
+from derive.real import AXIS, COMPLEX, FREQUENCY, ONE, TIME, UNIT, ZERO, reflect, scalar, scalars_of
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower, walk
 
@@ -217,7 +219,10 @@ def _check_function(template: Term, root: Symbol, reading: Reading) -> None:
 def check_modulus(statement: Equation, links: Links, reading: Reading) -> None:
     """Accept ln |f| as half the sum of the logarithms of squared distances to the zeros, minus that to the poles.
 
-    Without the bars f must be positive on the axis: each product occurs at s and at -s, so f = |g|^2.
+    The point is on the imaginary axis or the unit circle, along the reals or anywhere, and |xy| = |x| |y| is all that
+    is used: both sides are functions that may have no value at the zeros and poles themselves, finitely many points.
+    Without the bars f must be positive, which it is on the axis if each product occurs at s and at -s, so that
+    f = |g|^2 there; on the circle f p(s) p(-s) is not positive, and has no logarithm by this rule.
     """
     (lemma,) = _exactly(1, links)
     match statement:
@@ -252,9 +257,11 @@ def _palindromic(factors: Sequence[Term]) -> bool:
     return plain == turned
 
 
-def _place(point: Term) -> tuple[Poly, Poly]:
-    """Return the real and the imaginary part of a point: s, which is real, jω, or x + jy."""
+def _place(point: Term) -> tuple[Poly, Poly] | None:
+    """Return the real and the imaginary part of a point: s, which is real, jω, or x + jy; none on the unit circle."""
     match point:
+        case Quotient() if point == ON_CIRCLE:
+            return None
         case Symbol(name=x):
             return scalar(x), ZERO
         case Product((_, Symbol(name=y))):
@@ -262,20 +269,79 @@ def _place(point: Term) -> tuple[Poly, Poly]:
         case Sum((Symbol(name=x), Product((_, Symbol(name=y))))):
             return scalar(x), scalar(y)
         case _:
-            raise Rejected("the point is neither s, nor jω, nor x + jy")
+            raise Rejected("the point is neither s, nor jω, nor x + jy, nor on the unit circle")
 
 
-def _distances(factor: Roots, place: tuple[Poly, Poly], reading: Reading) -> Poly:
-    """Return the sum of ln |point - root|^2 over the roots of a real polynomial."""
+def _distances(factor: Roots, place: tuple[Poly, Poly] | None, reading: Reading) -> Poly:
+    """Return the sum of ln |point - root|^2 over the roots of a real polynomial.
+
+    For z = (1 + jω)/(1 - jω) on the circle and λ = a + jb, (1 - jω)(z - λ) = (1 - a - ωb) + j (ω(1 + a) - b), and
+    |1 - jω|^2 = 1 + ω^2.
+    """
     family, real = reading.real.families[factor.root.name], reading.real
     re, im = scalar(family.real), scalar(family.imaginary)
     if isinstance(factor.point, Neg):
         re = -re  # |-s - λ| = |s + λ|, and the conjugates are roots as well
-    along, across = place[0] - re, place[1] - im
-    name = real.find("log", along * along + across * across)
+    if place is None:
+        w = scalar(FREQUENCY)
+        along, across, less = ONE - re - w * im, w * (ONE + re) - im, _log_of(ONE + w * w, reading)
+    else:
+        along, across, less = place[0] - re, place[1] - im, ZERO
+    return total(_log_of(along * along + across * across, reading) - less, family.index, family.count, real)
+
+
+def _log_of(poly: Poly, reading: Reading) -> Poly:
+    name = reading.real.find("log", poly)
     if name is None:
         raise Rejected("the logarithm of a distance is not declared")
-    return total(scalar(name), family.index, family.count, real)
+    return scalar(name)
+
+
+def check_mirrored(statement: Equation, links: Links, reading: Reading) -> None:
+    """Accept ln f = ln c + 2 ln |det(zI - M)| - 2 ln |det(zI - N)| for z on the unit circle.
+
+    f det(sI - N) det(I - sN) = c det(sI - M) det(I - sM);  M, N real and of one size n, free of s;  c > 0, free of s
+
+    There 1/z is the conjugate of z, so that det(I - zM) = z^n det(I/z - M) is z^n times the conjugate of
+    det(zI - M), as M is real; z^n is the same on both sides and cancels, for M and N are of one size. What is left,
+    f |det(zI - N)|^2 = c |det(zI - M)|^2, makes f positive but for the eigenvalues of M and N on the circle, which are
+    finitely many points. The link is an identity between rational functions of s, which holds on the circle as well.
+    That c > 0, and a number, is why its logarithm is declared.
+    """
+    (lemma,) = _exactly(1, links)
+    match statement, lemma:
+        case (
+            Equation(Log(At(f, s, point)), "=", rhs),
+            Equation(
+                Product((f1, Det() as at_n, Det() as inner_n)), "=", Product((c, Det() as at_m, Det() as inner_m))
+            ),
+        ) if f == f1 and point == ON_CIRCLE:
+            pass
+        case _:
+            raise Rejected("it is about ln f on the circle, and f by det(sI - M) and det(I - sM)")
+    sizes = [_mirrored(*pair, reading) for pair in ((at_m, inner_m), (at_n, inner_n))]
+    if sizes[0] != sizes[1]:
+        raise Rejected("the matrices are of different sizes")
+    constant = value(Log(c), reading)
+    if any(_uses(value(c, reading), v, reading) for v in (COMPLEX, FREQUENCY)):
+        raise Rejected("the factor beside the determinants depends on s")
+    moduli = [value(Log(Modulus(At(d, s, point))), reading).scale(2) for d in (at_m, at_n)]
+    value(statement.lhs, reading)
+    if value(rhs, reading) != constant + moduli[0] - moduli[1]:
+        raise Rejected("the right-hand side is not the sum of the logarithms")
+
+
+def _mirrored(at: Det, inner: Det, reading: Reading) -> str:
+    """Return the size of M for det(sI - M) and det(I - sM), M real and free of s."""
+    one, two = square_of(at.body, reading), square_of(inner.body, reading)
+    point = identity(one.rows).scale(1, (COMPLEX,))
+    matrix = point - one
+    real = reading.context.is_real(matrix) and is_real(matrix, reading)
+    if not real or any(_uses(matrix, v, reading) for v in (COMPLEX, FREQUENCY)):
+        raise Rejected("the first determinant is not that of sI - M with M real")
+    if two != identity(one.rows) - matrix.scale(1, (COMPLEX,)):
+        raise Rejected("the second determinant is not that of I - sM")
+    return one.rows
 
 
 def check_trace_of_roots(statement: Equation, links: Links, reading: Reading) -> None:
@@ -472,6 +538,7 @@ CHECKS: Mapping[str, Callable[[Equation, Links, Reading], None]] = {
     "conjugate": check_conjugate,
     "same roots": check_same_roots,
     "modulus": check_modulus,
+    "mirrored": check_mirrored,
     "trace of roots": check_trace_of_roots,
     "exchange": check_exchange,
     "single": check_single,

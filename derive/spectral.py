@@ -74,6 +74,13 @@ class Total(Term):
 
 
 @dataclass(frozen=True)
+class Growth(Term):
+    """max(0, ln |λ|) for the roots λ of a family, and 0 where λ = 0: half of ln max(1, |λ|^2)."""
+
+    root: Symbol
+
+
+@dataclass(frozen=True)
 class Modulus(Term):
     """The absolute value of a complex number."""
 
@@ -82,7 +89,7 @@ class Modulus(Term):
 
 @dataclass(frozen=True)
 class At(Term):
-    """A function of a symbol at a point: on the imaginary axis, or at a large real number."""
+    """A function of a symbol at a point: on the imaginary axis, on the unit circle, or at a large real number."""
 
     body: Term
     symbol: Symbol

@@ -20,6 +20,7 @@ from derive.spectral import (
     Det,
     Distance,
     Entry,
+    Growth,
     ImaginaryPart,
     Modulus,
     RealPart,
@@ -313,7 +314,7 @@ def layout(term: Term | Equation) -> Box:
             return _function(term)
         case Det() | Roots() | Total() | RealPart() | ImaginaryPart() | Modulus() | TimesLog() | TimesArctan():
             return _spectral(term)
-        case Conjugate() | Distance():
+        case Conjugate() | Distance() | Growth():
             return _spectral(term)
         case Entry(body):
             return layout(body)
@@ -326,6 +327,8 @@ def layout(term: Term | Equation) -> Box:
 def label(text: str) -> Box:
     """Lay out an index or a time: letters, numbers and signs; digits right after a letter are its subscript."""
     items: list[Box] = []
+    if text.startswith("e^"):
+        return Scripted(Letter("e", upright=True), None, label(text[2:]))
     found: list[tuple[str, str, str, str]] = re.findall(r"(\\[A-Za-z]+|[^\W\d_])(\d*)|(\d+)|(\S)", text)
     for letter, index, digits, sign in found:
         if letter:
@@ -370,7 +373,18 @@ def _flat(addends: Iterable[Term]) -> Iterator[Term]:
         yield from _flat(addend.addends) if isinstance(addend, Sum) else (addend,)
 
 
-NAMED = (Log, Arctan, Limit, Max, Det, Total, Roots, RealPart, ImaginaryPart)  # set off from the factor before them
+NAMED = (
+    Log,
+    Arctan,
+    Limit,
+    Max,
+    Growth,
+    Det,
+    Total,
+    Roots,
+    RealPart,
+    ImaginaryPart,
+)  # set off from the factor before them
 
 
 def _product(term: Term) -> Box:
@@ -463,6 +477,8 @@ def _spectral(term: Term) -> Box:
             return Scripted(Fenced(row((layout(point), Op("−"), layout(root))), "|", "|"), None, Digits("2"))
         case Modulus(body):
             return Fenced(layout(body), "|", "|")
+        case Growth(root):
+            return layout(Max(Log(Modulus(root))))
         case Total(body, index, count) | Roots(body, _, index, count):
             large = Op("∑" if isinstance(term, Total) else "∏", "prefix")
             start = row((layout(index), Op("=", "tight"), Digits("1")))
@@ -485,8 +501,16 @@ def _written(point: Term) -> str:
             return name
         case Product(factors):
             return "".join(map(_written, factors))
+        case Sum((first, Neg(second))):
+            return f"{_written(first)}-{_written(second)}"
         case Sum(addends):
             return "+".join(map(_written, addends))
+        case Number(value):
+            return str(value)
+        case Quotient(top, bottom):
+            return f"({_written(top)})/({_written(bottom)})"
+        case Exp(body):
+            return f"e^{_written(body)}"
         case _:
             raise TypeError(f"no label for {type(point).__name__}")
 
