@@ -26,6 +26,7 @@ ROUTES: Mapping[str, str] = {
     "lmi-primal": "largest P that satisfies the Riccati inequality",
     "lmi-dual": "the dual of that program",
     "lmi-h2": "H2 synthesis by linear matrix inequalities",
+    "interior-point": "interior-point method made for the covariance program",
     "nlp": "nonlinear program for the gain",
     "integral": "integral of the logarithm of the output spectrum",
     "hamiltonian": "eigenvalues of the Hamiltonian matrix",

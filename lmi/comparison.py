@@ -39,7 +39,7 @@ class Route:
     """One row of the table.
 
     Attributes:
-        name: riccati, lmi-primal, lmi-dual, lmi-h2, nlp, integral, hamiltonian or closed-form.
+        name: riccati, lmi-primal, lmi-dual, lmi-h2, interior-point, nlp, integral, hamiltonian or closed-form.
         trace: tr P, or None.
         cost: tr(M P), or None.
         output: tr(C P C' V^-1), in discrete time ln det(C P C' + V), or None.

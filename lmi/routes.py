@@ -124,6 +124,16 @@ def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
     return run
 
 
+def _interior_point(plant: Plant) -> Answer:
+    from lmi.interior_point import solve_interior_point
+
+    found = solve_interior_point(plant)
+    if found.P is None or found.gain is None:
+        return Answer(found.status)
+    error = covariance_error(plant, found.P) if found.status == Status.SOLVED.value else None
+    return _covariance(plant, found.status, found.P, found.gain, error)
+
+
 def _nlp(plant: Plant) -> Answer:
     from derive.numeric.gain_nlp import optimise_gain
 
@@ -199,10 +209,12 @@ ROUTES = (
     RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
     RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
     RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, "hamiltonian"), largest=20),
-    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "integral", "hamiltonian", "closed-form"), largest=40),
-    RouteSpec("integral", _integral, ("riccati", *_CONVEX, "nlp", "hamiltonian", "closed-form")),
+    RouteSpec("interior-point", _interior_point, _OTHERS, largest=120),
+    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "hamiltonian", "closed-form"), largest=40),
+    RouteSpec("integral", _integral, ("riccati", *_CONVEX, "interior-point", "nlp", "hamiltonian", "closed-form")),
     RouteSpec("hamiltonian", _hamiltonian, (*_CONVEX, "nlp", "integral", "closed-form")),
-    RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "nlp", "integral", "hamiltonian")),
+    RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", "hamiltonian")),
 )
 """Riccati first. The convex programs share coordinates and solver, Riccati and the Hamiltonian's eigenvalues the same
-matrix, so that these do not confirm each other."""
+matrix, and the interior-point method starts from the Riccati equation's answer, so that these do not confirm each
+other."""

@@ -106,7 +106,7 @@ def off(plant, factor=1 + 1e-3):
 
 
 def test_an_output_that_is_proved_wrong_is_a_disagreement(monkeypatch):
-    run_only(monkeypatch, ROUTES[0], replace(ROUTES[4], run=off), ROUTES[5])
+    run_only(monkeypatch, ROUTES[0], replace(ROUTES[5], run=off), ROUTES[6])
     validation = validate(example_plant())
     assert validation.route("nlp").excluded
     assert not validation.route("nlp").agrees
@@ -117,7 +117,7 @@ def test_an_output_that_is_proved_wrong_is_a_disagreement(monkeypatch):
 
 
 def test_routes_that_agree_on_a_wrong_number_are_found_out(monkeypatch):
-    run_only(monkeypatch, replace(ROUTES[0], run=off), replace(ROUTES[4], run=off))
+    run_only(monkeypatch, replace(ROUTES[0], run=off), replace(ROUTES[5], run=off))
     validation = validate(example_plant())
     assert [route.excluded for route in validation.routes] == [True, True]
     assert validation.verdict is Verdict.DISAGREE
@@ -125,12 +125,12 @@ def test_routes_that_agree_on_a_wrong_number_are_found_out(monkeypatch):
 
 @pytest.mark.parametrize("change", [{"output_error": np.inf}, {"output": np.nan}, {"output": None}])
 def test_what_admits_its_error_or_is_no_number_is_not_proved_wrong(change, monkeypatch):
-    run_only(monkeypatch, ROUTES[0], replace(ROUTES[4], run=lambda plant: replace(off(plant), **change)))
+    run_only(monkeypatch, ROUTES[0], replace(ROUTES[5], run=lambda plant: replace(off(plant), **change)))
     assert not validate(example_plant()).route("nlp").excluded
 
 
 def test_a_small_difference_is_no_disagreement(monkeypatch):
-    run_only(monkeypatch, ROUTES[0], replace(ROUTES[4], run=lambda plant: off(plant, 1 + AGREEMENT / 2)))
+    run_only(monkeypatch, ROUTES[0], replace(ROUTES[5], run=lambda plant: off(plant, 1 + AGREEMENT / 2)))
     assert not validate(example_plant()).route("nlp").excluded
 
 
@@ -167,7 +167,7 @@ def test_a_proved_error_that_is_large_confirms_nothing(monkeypatch):
         answer = ROUTES[0].run(plant)
         return replace(answer, P=(1 + 3e-6) * answer.P, error=np.inf, output_error=np.inf)
 
-    run_only(monkeypatch, replace(ROUTES[0], run=off_by_little), ROUTES[4])
+    run_only(monkeypatch, replace(ROUTES[0], run=off_by_little), ROUTES[5])
     validation = validate(replace(example_plant(), M=2 * np.eye(4)))
     assert validation.routes[0].residual == pytest.approx(3e-6, rel=1e-3)
     assert validation.verdict is Verdict.UNCONFIRMED

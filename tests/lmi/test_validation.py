@@ -22,7 +22,8 @@ from lmi.solve import Status
 from lmi.validation import Verdict, validate
 
 TIMES = ("continuous", "discrete")
-NAMES = ("riccati", "lmi-primal", "lmi-dual", "lmi-h2", "nlp", "integral", "hamiltonian", "closed-form")
+CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2", "interior-point")
+NAMES = ("riccati", *CONVEX, "nlp", "integral", "hamiltonian", "closed-form")
 
 
 def run_only(monkeypatch, **runs):
@@ -118,7 +119,7 @@ def test_cancellation_in_the_output_of_a_large_covariance_is_neither(monkeypatch
     rounded = output_rounding(plant, P)
     assert 1e-4 < rounded < 1e-2
     riccati = replace(ROUTES[0], run=lambda plant: Answer("stabilising", P, np.zeros((2, 1)), 2.0, error=0.0))
-    integral = replace(ROUTES[5], run=lambda plant: Answer("solved", output=2.0 + rounded, error=0.0))
+    integral = replace(ROUTES[6], run=lambda plant: Answer("solved", output=2.0 + rounded, error=0.0))
     monkeypatch.setattr(validation_module, "ROUTES", (riccati, integral))
     validation = validate(plant)
     assert not validation.route("integral").agrees
@@ -133,7 +134,7 @@ def garbage(plant):
 
 @pytest.mark.parametrize("time", TIMES)
 def test_a_confident_wrong_covariance_is_a_disagreement(time, random_plant, monkeypatch):
-    run_only(monkeypatch, nlp=garbage, integral=ROUTES[5].run)
+    run_only(monkeypatch, nlp=garbage, integral=ROUTES[6].run)
     validation = validate(random_plant(time, 3))
     assert validation.verdict is Verdict.DISAGREE
     assert validation.verdict.exit_code == 1
@@ -193,7 +194,7 @@ def test_a_route_that_raises_is_named_with_its_reason(error, monkeypatch):
     def fail(plant):
         raise error
 
-    run_only(monkeypatch, nlp=fail, integral=ROUTES[5].run)
+    run_only(monkeypatch, nlp=fail, integral=ROUTES[6].run)
     validation = validate(example_plant())
     assert validation.verdict is Verdict.AGREE
     route = validation.route("nlp")
@@ -202,7 +203,7 @@ def test_a_route_that_raises_is_named_with_its_reason(error, monkeypatch):
 
 
 def test_without_an_independent_route_nothing_is_confirmed(monkeypatch):
-    monkeypatch.setattr(validation_module, "ROUTES", tuple(ROUTES[i] for i in (0, 6)))
+    monkeypatch.setattr(validation_module, "ROUTES", tuple(ROUTES[i] for i in (0, 7)))
     validation = validate(example_plant())
     assert validation.route("hamiltonian").agrees
     assert validation.verdict is Verdict.UNCONFIRMED
@@ -210,14 +211,14 @@ def test_without_an_independent_route_nothing_is_confirmed(monkeypatch):
 
 def test_without_riccati_nothing_is_confirmed(monkeypatch):
     failed = replace(ROUTES[0], run=lambda plant: Answer("failed: no solution"))
-    monkeypatch.setattr(validation_module, "ROUTES", (failed, ROUTES[5]))
+    monkeypatch.setattr(validation_module, "ROUTES", (failed, ROUTES[6]))
     validation = validate(example_plant())
     assert validation.verdict is Verdict.UNCONFIRMED
     assert validation.route("integral").relative_difference is None
 
 
 def test_a_plant_too_large_for_a_route_is_said_to_be(monkeypatch):
-    monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], replace(ROUTES[3], largest=3), ROUTES[5]))
+    monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], replace(ROUTES[3], largest=3), ROUTES[6]))
     assert validate(example_plant()).route("lmi-h2").status == "not attempted: 4 states, this route takes up to 3"
 
 

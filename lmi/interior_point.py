@@ -1,0 +1,323 @@
+"""A primal-dual interior-point method made for the covariance program: O(n^4) arithmetic a step.
+
+    max tr(M P)  s.t.  S = F(P) >= 0                continuous: F(P) = J + U P E' + E P U'
+    min tr(J Z)  s.t.  F*(Z) + M = 0,  Z >= 0       discrete:   F(P) = J + U P U' - E P E'
+
+with J = [[W, N], [N', V]], U = [A; C], E = [I; 0] and F* the adjoint of the linear part. A general solver forms the
+matrix of its normal equations from n (n + 1)/2 constraint matrices of size n + l, here four Kronecker products suffice.
+
+The method starts on the central path F(P) = mu Z^-1, which is known in closed form up to a Riccati and a Lyapunov
+equation: with a gain L, Z = [I, -L]' X [I, -L] + mu blkdiag(0, G^-1), where
+    continuous: (A - L C)'X + X (A - L C) + M = 0,  G = V,             P solves the Riccati equation of W - mu X^-1
+    discrete:   (A - L C)'X (A - L C) - X + mu C'G^-1 C + M = 0,  G = V + C P C',  likewise.
+Its coordinates and its start therefore use the answer of the Riccati equation, so that it does not confirm that route;
+what it converges to is certified by its own residuals and gap.
+
+Source: C. Helmberg, F. Rendl, R. Vanderbei, H. Wolkowicz, An interior-point method for semidefinite programming, SIAM
+J. Optim. 6(2), 1996 (the direction); S. Mehrotra, On the implementation of a primal-dual interior point method, SIAM
+J. Optim. 2(4), 1992 (predictor and corrector).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.numeric.lyapunov import solve_lyapunov
+from derive.numeric.plant import Plant
+from lmi.scaling import balanced, recentred, scaled_plant
+
+__all__ = ["InteriorPoint", "solve_interior_point"]
+
+Matrix = NDArray[np.floating[Any]]
+
+TOLERANCE = 1e-13
+"""Relative gap and residuals at which the method stops."""
+
+SOLVED = 1e-10
+"""Relative gap and residuals below which the answer counts as solved."""
+
+STEPS = 40
+START = 0.1
+"""mu (n + l) / tr(M P) at the start."""
+
+CENTRED = 0.05
+"""Relative change of X at which the start counts as central."""
+
+SHORT = 0.3
+"""Length of a predictor step below which the next one stays away from the boundary."""
+
+
+@dataclass(frozen=True, eq=False)
+class InteriorPoint:
+    """What the method found, in the plant's units.
+
+    Attributes:
+        status: "solved", or "inaccurate", or "failed: " and why.
+        P: error covariance (n, n), or None.
+        gain: the optimal gain for P (n, l), or None; Z gives it to half as many digits only.
+        merit: the largest of the relative gap and of the residuals relative to their terms, recomputed.
+        history: the same after every step.
+    """
+
+    status: str
+    P: Matrix | None
+    gain: Matrix | None
+    merit: float
+    history: tuple[float, ...]
+
+
+def solve_interior_point(plant: Plant) -> InteriorPoint:
+    """Solve the covariance program of a plant and its dual.
+
+    Args:
+        plant: V > 0, (A, C) detectable, no mode on the boundary of stability that the noise leaves unexcited (there the
+            dual has no solution and the path no end).
+
+    Example:
+        >>> from derive.numeric.plant import example_plant
+        >>> found = solve_interior_point(example_plant())
+        >>> found.status, found.merit < 1e-12
+        ('solved', True)
+    """
+    from derive.numeric.riccati import solve_riccati
+
+    known = solve_riccati(plant)
+    if known.status != "stabilising":
+        return InteriorPoint("failed: no stabilising solution, so that the path has no end", None, None, np.inf, ())
+    common = balanced(plant)
+    scaling = recentred(plant, common, common.scaled_covariance(known.P), 0.0)
+    scaled = scaled_plant(plant, scaling)
+    try:
+        start = _central_point(scaled, scaling.scaled_covariance(known.P))
+        P, history = _follow(_Cone.of(scaled), *start)
+    except np.linalg.LinAlgError as error:
+        return InteriorPoint(f"failed: {error}", None, None, np.inf, ())
+    merit = min(history)
+    status = "solved" if merit < SOLVED else "inaccurate"
+    gain = scaling.gain(_gain(scaled, P)[0])
+    return InteriorPoint(status, scaling.covariance(P), gain, merit, tuple(history))
+
+
+# ------------------------------------------------------------------------------------------------ the cone
+@dataclass(frozen=True, eq=False)
+class _Cone:
+    """The map P -> F(P) of a plant, its adjoint, and the normal equations; M = I."""
+
+    J: Matrix
+    U: Matrix
+    E: Matrix
+    continuous: bool
+
+    @classmethod
+    def of(cls, plant: Plant) -> _Cone:
+        """Return the cone of a plant with weight M = I."""
+        J = np.block([[plant.W, plant.N], [plant.N.T, plant.V]])
+        E = np.vstack([np.eye(plant.n), np.zeros((plant.l, plant.n))])
+        return cls((J + J.T) / 2, np.vstack([plant.A, plant.C]), E, plant.is_continuous)
+
+    def linear(self, P: Matrix) -> Matrix:
+        """Return F(P) - J (n + l, n + l)."""
+        if self.continuous:
+            half = self.U @ P @ self.E.T
+            return half + half.T
+        return self.U @ P @ self.U.T - self.E @ P @ self.E.T
+
+    def adjoint(self, Z: Matrix) -> Matrix:
+        """Return F*(Z) (n, n)."""
+        if self.continuous:
+            half = self.E.T @ Z @ self.U
+            return half + half.T
+        return _symmetric(self.U.T @ Z @ self.U - self.E.T @ Z @ self.E)
+
+    def normal_matrix(self, Z: Matrix, inverse: Matrix) -> Matrix:
+        """Return the matrix of P -> F*(Z F(P) S^-1), symmetrised, in packed coordinates."""
+        pairs = [(self.E, self.U), (self.U, self.E)] if self.continuous else [(self.U, self.U), (self.E, self.E)]
+        signs = [1.0, 1.0] if self.continuous else [1.0, -1.0]
+        lefts: list[Matrix] = []
+        rights: list[Matrix] = []
+        for (a, b), one in zip(pairs, signs, strict=True):
+            for (c, d), two in zip(pairs, signs, strict=True):
+                lefts.append(one * two * (a.T @ Z @ d))
+                rights.append(c.T @ inverse @ b)
+        return _packed_products(np.stack(lefts), np.stack(rights))
+
+
+def _packed_products(lefts: Matrix, rights: Matrix) -> Matrix:
+    """Return sum_t of P -> sym(X_t P Y_t) for symmetric P, in coordinates in which tr(P P') is a sum of squares.
+
+    Row (i, j), column (k, l): the mean of X_ik Y_lj over the exchange of i, j and of k, l, block row by block row.
+    """
+    n = lefts.shape[1]
+    rows, columns = np.triu_indices(n)
+    weight = np.where(rows == columns, 0.5, np.sqrt(0.5))
+    turned = rights.transpose(0, 2, 1)  # Y'_jl
+    flat, by_row = turned.reshape(len(turned), n * n), lefts.transpose(1, 2, 0)
+    out = np.empty((len(rows), len(rows)))
+    place = 0
+    for i in range(n):
+        direct = (by_row[i] @ flat).reshape(n, n, n)[:, i:].transpose(1, 0, 2)  # [j, k, l] = X_ik Y'_jl
+        crossed = by_row[i:] @ turned[:, i, :]  # [j, k, l] = X_jk Y'_il
+        block = (direct + crossed).reshape(n - i, n * n)
+        out[place : place + n - i] = block[:, rows * n + columns] + block[:, columns * n + rows]
+        place += n - i
+    out *= weight[:, None] * weight[None, :]
+    return (out + out.T) / 2
+
+
+def _symmetric(X: Matrix) -> Matrix:
+    return (X + X.T) / 2
+
+
+# ------------------------------------------------------------------------------------------------ the start
+def _central_point(plant: Plant, P: Matrix) -> tuple[Matrix, Matrix]:
+    """Return P, Z near the central path, both strictly feasible up to rounding."""
+    from scipy.linalg import solve_continuous_are, solve_discrete_are
+
+    solver = solve_continuous_are if plant.is_continuous else solve_discrete_are
+    mu = START * float(np.trace(P)) / (plant.n + plant.l)
+    X = _adjoint_solution(plant, P, 0.0)
+    found: Matrix | None = None
+    for _ in range(STEPS):
+        noise = _symmetric(plant.W - mu * np.linalg.inv(X))
+        candidate = _solved(solver, plant, noise)
+        if candidate is None:
+            if found is not None:
+                break
+            mu *= SHORT
+            continue
+        found = candidate
+        before, X = X, _adjoint_solution(plant, found, mu)
+        if np.linalg.norm(X - before) < CENTRED * np.linalg.norm(X):
+            break
+    if found is None:
+        raise np.linalg.LinAlgError("no point on the central path was found")
+    L, G = _gain(plant, found)
+    gap = np.vstack([np.eye(plant.n), -L.T])
+    Z = gap @ X @ gap.T
+    Z[plant.n :, plant.n :] += mu * np.linalg.inv(G)
+    return found, _symmetric(Z)
+
+
+def _solved(solver: Callable[..., Any], plant: Plant, noise: Matrix) -> Matrix | None:
+    """Return the stabilising solution of the Riccati equation with other process noise, or None."""
+    try:
+        P = _symmetric(solver(plant.A.T, plant.C.T, noise, plant.V, s=plant.N))
+    except (np.linalg.LinAlgError, ValueError):
+        return None
+    modes = np.linalg.eigvals(plant.A - _gain(plant, P)[0] @ plant.C)
+    stable = modes.real.max() < 0 if plant.is_continuous else np.abs(modes).max() < 1
+    return P if stable else None
+
+
+def _gain(plant: Plant, P: Matrix) -> tuple[Matrix, Matrix]:
+    """Return the optimal gain L (n, l) for P, and G = V, in discrete time V + C P C'."""
+    PC = P @ plant.C.T
+    top, G = (PC, plant.V) if plant.is_continuous else (plant.A @ PC, plant.V + plant.C @ PC)
+    return np.linalg.solve(G, (top + plant.N).T).T, G
+
+
+def _adjoint_solution(plant: Plant, P: Matrix, mu: float) -> Matrix:
+    """Return X of the adjoint Lyapunov equation of A - L C, L the gain for P."""
+    L, G = _gain(plant, P)
+    forcing = np.eye(plant.n)
+    if not plant.is_continuous:
+        forcing = forcing + mu * plant.C.T @ np.linalg.solve(G, plant.C)
+    return _symmetric(solve_lyapunov((plant.A - L @ plant.C).T, forcing, plant.time))
+
+
+# ------------------------------------------------------------------------------------------------ the path
+def _follow(cone: _Cone, P: Matrix, Z: Matrix) -> tuple[Matrix, list[float]]:
+    """Follow the path to its end; return the best P on the way, and the merit after each step."""
+    S = _symmetric(cone.J + cone.linear(P))
+    best, history = P, list[float]()
+    for _ in range(STEPS):
+        merit = _merit(cone, P, Z, S)
+        if not history or merit < min(history):
+            best = P
+        history.append(merit)
+        if merit < TOLERANCE or merit > 1e4 * min(history):
+            break
+        try:
+            P, Z, S = _Step(cone, P, Z, S).taken()
+        except np.linalg.LinAlgError:
+            break
+    return best, history
+
+
+def _merit(cone: _Cone, P: Matrix, Z: Matrix, S: Matrix) -> float:
+    """Return the largest of the relative gap and the residuals relative to the sizes of their terms."""
+    U, E, P_, Z_ = np.abs(cone.U), cone.E, np.abs(P), np.abs(Z)
+    gap = abs(float(np.sum(S * Z))) / (1 + abs(float(np.trace(P))))
+    dual, primal = (U.T @ Z_ @ E, U @ P_ @ E.T) if cone.continuous else (U.T @ Z_ @ U, U @ P_ @ U.T)
+    equation = np.linalg.norm(cone.adjoint(Z) + np.eye(len(P))) / (np.sqrt(len(P)) + np.linalg.norm(dual))
+    slack = np.linalg.norm(cone.J + cone.linear(P) - S) / (np.linalg.norm(cone.J) + np.linalg.norm(primal))
+    return float(max(gap, equation, slack))
+
+
+class _Step:
+    """One step of the method: the normal equations are factored once and solved for predictor and corrector."""
+
+    def __init__(self, cone: _Cone, P: Matrix, Z: Matrix, S: Matrix):
+        from scipy.linalg import cho_factor, cho_solve
+
+        self.cone, self.P, self.Z, self.S = cone, P, Z, S
+        self.roots = np.linalg.cholesky(S), np.linalg.cholesky(Z)
+        self.inverse = _symmetric(cho_solve((self.roots[0], True), np.eye(len(S))))
+        self.factor = cho_factor(cone.normal_matrix(Z, self.inverse), lower=True, overwrite_a=True)
+        self.lacking = -np.eye(len(P)) - cone.adjoint(Z)
+        self.slack = _symmetric(cone.J + cone.linear(P) - S)
+
+    def taken(self) -> tuple[Matrix, Matrix, Matrix]:
+        """Return P, Z and S after the step."""
+        mu = float(np.sum(self.S * self.Z)) / len(self.S)
+        dP, dZ, dS = self._direction(-self.Z)
+        primal, dual = self._lengths(dS, dZ, 0.98)
+        reached = float(np.sum((self.S + primal * dS) * (self.Z + dual * dZ))) / len(self.S)
+        centring = min(1.0, max(1e-6, reached / mu)) ** 3 if reached > 0 else 1e-6
+        if min(primal, dual) < SHORT:
+            centring = max(centring, 0.1)
+        correction = _symmetric(dZ @ dS @ self.inverse)
+        dP, dZ, dS = self._direction(centring * mu * self.inverse - self.Z - correction)
+        primal, dual = self._lengths(dS, dZ, 0.99)
+        return self.P + primal * dP, _symmetric(self.Z + dual * dZ), _symmetric(self.S + primal * dS)
+
+    def _direction(self, target: Matrix) -> tuple[Matrix, Matrix, Matrix]:
+        """Return dP, dZ, dS with dZ = sym(target - Z dS S^-1), dS = slack + F(dP) - J and F*(dZ) = what is lacking."""
+        wanted = _symmetric(target - self.Z @ self.slack @ self.inverse)
+        dP = self._solve(self.cone.adjoint(wanted) - self.lacking)
+        dZ = self._dual(target, dP)
+        dP = dP + self._solve(self.cone.adjoint(dZ) - self.lacking)
+        return dP, self._dual(target, dP), _symmetric(self.slack + self.cone.linear(dP))
+
+    def _dual(self, target: Matrix, dP: Matrix) -> Matrix:
+        return _symmetric(target - self.Z @ (self.slack + self.cone.linear(dP)) @ self.inverse)
+
+    def _solve(self, rhs: Matrix) -> Matrix:
+        """Solve the normal equations for a symmetric right-hand side."""
+        from scipy.linalg import cho_solve
+
+        rows, columns = np.triu_indices(len(rhs))
+        weight = np.where(rows == columns, 1.0, np.sqrt(2.0))
+        x = cho_solve(self.factor, rhs[rows, columns] * weight) / weight
+        out = np.zeros_like(rhs)
+        out[rows, columns] = out[columns, rows] = x
+        return out
+
+    def _lengths(self, dS: Matrix, dZ: Matrix, share: float) -> tuple[float, float]:
+        """Return how far S + a dS and Z + b dZ stay positive definite, at most 1."""
+        primal, dual = (_reach(root, d) for root, d in zip(self.roots, (dS, dZ), strict=True))
+        return min(1.0, share * primal), min(1.0, share * dual)
+
+
+def _reach(root: Matrix, D: Matrix) -> float:
+    """Return the largest a with R R' + a D >= 0, R lower triangular."""
+    from scipy.linalg import solve_triangular
+
+    half = solve_triangular(root, D, lower=True)
+    least = float(np.linalg.eigvalsh(_symmetric(solve_triangular(root, half.T, lower=True)))[0])
+    return np.inf if least >= 0 else -1.0 / least
