@@ -1,0 +1,264 @@
+"""Exact arithmetic on rational matrices: products, definiteness, Routh's criterion. Standard library only.
+
+A matrix is a table of integers over one positive denominator. Definiteness is decided by fraction-free L D L'; a
+congruence that floating point suggests saves that work when its exact result is diagonally dominant.
+"""
+
+# pyright: strict
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from math import gcd, isfinite, lcm, ldexp, sqrt
+from operator import mul
+
+__all__ = [
+    "Exact",
+    "TooLargeError",
+    "is_definite",
+    "is_hurwitz",
+    "is_semidefinite",
+    "moved_to_the_half_plane",
+    "symmetric_block",
+]
+
+Table = list[list[int]]
+
+WORK = 2 * 10**10
+"""Largest (rows)^4 times bits for which elimination is begun: about a minute."""
+
+CONGRUENCE_BITS = 53
+"""Bits of the congruence that floating point suggests."""
+
+
+class TooLargeError(ArithmeticError):
+    """A question that could be decided, but not in reasonable time."""
+
+
+@dataclass(frozen=True)
+class Exact:
+    """A rational matrix (rows, columns): integers over one positive denominator."""
+
+    numerators: tuple[tuple[int, ...], ...]
+    denominator: int = 1
+
+    @classmethod
+    def of(cls, rows: Sequence[Sequence[Fraction | int]]) -> "Exact":
+        """Put fractions over their least common denominator."""
+        denominator = lcm(*(x.denominator for row in rows for x in row))
+        numerators = (tuple(x.numerator * (denominator // x.denominator) for x in row) for row in rows)
+        return cls(tuple(numerators), denominator)
+
+    @classmethod
+    def of_floats(cls, rows: Sequence[Sequence[float]]) -> "Exact":
+        """Take doubles for the rationals that they are."""
+        return cls.of([[Fraction(x) for x in row] for row in rows])
+
+    @classmethod
+    def identity(cls, n: int) -> "Exact":
+        """Return the identity (n, n)."""
+        return cls(tuple(tuple(int(i == j) for j in range(n)) for i in range(n)))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return len(self.numerators), len(self.numerators[0])
+
+    @property
+    def T(self) -> "Exact":
+        """The transpose."""
+        return Exact(tuple(zip(*self.numerators, strict=True)), self.denominator)
+
+    @property
+    def bits(self) -> int:
+        """Length of the longest integer."""
+        return max(self.denominator, *(abs(x) for row in self.numerators for x in row)).bit_length()
+
+    def __getitem__(self, index: tuple[int, int]) -> Fraction:
+        return Fraction(self.numerators[index[0]][index[1]], self.denominator)
+
+    def __matmul__(self, other: "Exact") -> "Exact":
+        columns = other.T.numerators
+        product = (tuple(sum(map(mul, row, column)) for column in columns) for row in self.numerators)
+        return Exact(tuple(product), self.denominator * other.denominator)
+
+    def __add__(self, other: "Exact") -> "Exact":
+        denominator = lcm(self.denominator, other.denominator)
+        a, b = denominator // self.denominator, denominator // other.denominator
+        pairs = zip(self.numerators, other.numerators, strict=True)
+        return Exact(tuple(tuple(a * x + b * y for x, y in zip(p, q, strict=True)) for p, q in pairs), denominator)
+
+    def __neg__(self) -> "Exact":
+        return Exact(tuple(tuple(-x for x in row) for row in self.numerators), self.denominator)
+
+    def __sub__(self, other: "Exact") -> "Exact":
+        return self + -other
+
+    def __mul__(self, factor: Fraction) -> "Exact":
+        numerators = tuple(tuple(factor.numerator * x for x in row) for row in self.numerators)
+        return Exact(numerators, self.denominator * factor.denominator)
+
+    def equals(self, other: "Exact") -> bool:
+        """Tell whether both are the same matrix."""
+        return self.shape == other.shape and not any(any(row) for row in (self - other).numerators)
+
+    @property
+    def is_symmetric(self) -> bool:
+        """Whether it is its own transpose."""
+        return self.numerators == self.T.numerators
+
+    def trace_of_product(self, other: "Exact") -> Fraction:
+        """Return tr(self @ other)."""
+        pairs = zip(self.numerators, other.T.numerators, strict=True)
+        return Fraction(sum(sum(map(mul, p, q)) for p, q in pairs), self.denominator * other.denominator)
+
+
+def symmetric_block(a: Exact, b: Exact, c: Exact) -> Exact:
+    """Return [[a, b], [b', c]]."""
+    denominator = lcm(a.denominator, b.denominator, c.denominator)
+    x, y, z = (denominator // part.denominator for part in (a, b, c))
+    cross = b.T
+    rows = zip(a.numerators, b.numerators, strict=True)
+    top = [(*(x * p for p in row), *(y * q for q in right)) for row, right in rows]
+    rows = zip(cross.numerators, c.numerators, strict=True)
+    below = [(*(y * q for q in left), *(z * r for r in row)) for left, row in rows]
+    return Exact((*top, *below), denominator)
+
+
+def is_definite(M: Exact) -> bool:
+    """Decide M > 0 for a symmetric M; may raise TooLargeError."""
+    return _decide(M, strict=True)
+
+
+def is_semidefinite(M: Exact) -> bool:
+    """Decide M >= 0 for a symmetric M; may raise TooLargeError."""
+    return _decide(M, strict=False)
+
+
+def _decide(M: Exact, strict: bool) -> bool:
+    if not M.is_symmetric:
+        raise ValueError("expected a symmetric matrix")
+    table = [list(row) for row in M.numerators]
+    if any(row[i] < 0 or (row[i] == 0 and (strict or any(row))) for i, row in enumerate(table)):
+        return False
+    return _dominant(table) or _pivots(table, strict)
+
+
+def _pivots(a: Table, strict: bool) -> bool:
+    """Tell whether all pivots of L D L' are positive, or where not strict, zero with a row of zeros.
+
+    Fraction-free elimination (E. H. Bareiss, 1968): every division is exact, and the pivots met are the leading minors
+    of the matrix without the rows left out.
+
+    Raises:
+        TooLargeError: it would take too long.
+    """
+    bits = max(abs(x) for row in a for x in row).bit_length()
+    if len(a) ** 4 * bits > WORK:
+        raise TooLargeError(f"a matrix of {len(a)} rows and {bits} bits is too large to decide its sign")
+    a, before = [row[: i + 1] for i, row in enumerate(a)], 1
+    for k in range(len(a)):
+        pivot = a[k][k]
+        column = [a[i][k] for i in range(k + 1, len(a))]
+        if pivot < 0 or (pivot == 0 and (strict or any(column))):
+            return False
+        if pivot == 0:
+            continue
+        for i, x in enumerate(column, start=k + 1):
+            row = a[i]
+            for j, y in enumerate(column[: i - k], start=k + 1):
+                row[j] = (row[j] * pivot - x * y) // before
+        before = pivot
+    return True
+
+
+def _dominant(a: Table) -> bool:
+    """Prove M > 0: T M T' is strictly diagonally dominant, with T triangular, its diagonal positive, and all exact.
+
+    T is the inverse of a Cholesky factor in floating point; False proves nothing.
+    """
+    n = len(a)
+    halves = [(row[i].bit_length() + 1) // 2 for i, row in enumerate(a)]
+    most = max(halves)
+    scaled = [[x << (2 * most - halves[i] - halves[j]) for j, x in enumerate(row)] for i, row in enumerate(a)]
+    T = _inverse_factor([[_ratio(x, 2 * most) for x in row] for row in scaled])
+    if T is None:
+        return False
+    rows = [[int(ldexp(x, CONGRUENCE_BITS)) for x in row] for row in T]
+    half = [[sum(map(mul, row, scaled_row)) for scaled_row in scaled] for row in rows]
+    for i, row in enumerate(half):
+        entries = [sum(map(mul, row, rows[j])) for j in range(n)]
+        if rows[i][i] <= 0 or not 2 * entries[i] > sum(map(abs, entries)):
+            return False
+    return True
+
+
+def _ratio(x: int, bits: int) -> float:
+    """Return x / 2^bits; what is beyond the range of doubles is not finite."""
+    shift = max(0, abs(x).bit_length() - 64)
+    try:
+        return ldexp(float(x >> shift), shift - bits)
+    except OverflowError:
+        return float("inf")
+
+
+def _inverse_factor(a: list[list[float]]) -> list[list[float]] | None:
+    """Return T = R^-1, R R' = a, as full rows with zeros right of the diagonal, or None."""
+    n = len(a)
+    R: list[list[float]] = []
+    for i in range(n):
+        row: list[float] = []
+        for j in range(i):
+            row.append((a[i][j] - sum(map(mul, row, R[j]))) / R[j][j])
+        pivot = a[i][i] - sum(map(mul, row, row))
+        if not (isfinite(pivot) and pivot > 0):
+            return None
+        R.append([*row, sqrt(pivot)])
+    columns: list[list[float]] = []  # of T, from their diagonal downwards
+    for j in range(n):
+        column = [1.0 / R[j][j]]
+        for i in range(j + 1, n):
+            column.append(-sum(map(mul, R[i][j:i], column)) / R[i][i])
+        columns.append(column)
+    rows = [[columns[j][i - j] if j <= i else 0.0 for j in range(n)] for i in range(n)]
+    return rows if all(map(isfinite, (x for row in rows for x in row))) else None
+
+
+def is_hurwitz(polynomial: Sequence[int]) -> bool:
+    """Decide whether all roots of a polynomial, its highest coefficient first, have negative real parts.
+
+    By Routh's array with positive common factors of a row removed: all entries of its first column are positive. The
+    numbers of roots with Re > 0 are not counted; the first entry that is not positive decides.
+    """
+    sign = 1 if polynomial[0] > 0 else -1
+    above, row = ([sign * x for x in polynomial[start::2]] for start in (0, 1))
+    for _ in range(len(polynomial) - 1):
+        if not row or row[0] <= 0:
+            return False
+        padded = [*row[1:], *[0] * (len(above) - len(row))]
+        below = [row[0] * x - above[0] * y for x, y in zip(above[1:], padded, strict=False)]
+        common = gcd(*below) or 1
+        above, row = row, [x // common for x in below]
+    return polynomial[0] != 0
+
+
+def moved_to_the_half_plane(polynomial: Sequence[int]) -> list[int]:
+    """Return (s - 1)^n p((s + 1) / (s - 1)): its roots have Re s < 0 where those of p have |z| < 1.
+
+    When p(1) = 0 its highest coefficient is 0.
+    """
+    result, power = [0], [1]  # power: (s - 1)^k, in Horner's scheme for p(u / v) v^n with u = s + 1, v = s - 1
+    for coefficient in polynomial:
+        result = _sum(_times(result, 1), [coefficient * x for x in power])
+        power = _times(power, -1)
+    return result[1:]
+
+
+def _times(polynomial: Sequence[int], constant: int) -> list[int]:
+    """Return the polynomial times s + constant."""
+    return _sum([*polynomial, 0], [0, *(constant * x for x in polynomial)])
+
+
+def _sum(p: Sequence[int], q: Sequence[int]) -> list[int]:
+    n = max(len(p), len(q))
+    return [x + y for x, y in zip([*[0] * (n - len(p)), *p], [*[0] * (n - len(q)), *q], strict=True)]

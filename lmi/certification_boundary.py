@@ -1,0 +1,131 @@
+"""The subspace of unexcited boundary modes in rational arithmetic, off which the covariance is bounded from below.
+
+With F = A - N V^-1 C and q = W - N V^-1 N', let Z span the left-invariant subspace of F on which all modes are on the
+boundary and q Z = 0. P* vanishes on it, F(P) >= 0 leaves no room there, and only a P_lo with P_lo Z = 0 exactly can be
+close to P*. With U spanning the complement, F U = U F_r, q = U q_r U', and for P = U Pi U' the Riccati operator is
+U (that of F_r, C U, q_r at Pi) U': a strict lower bound Pi of the smaller plant gives F(P) >= 0.
+"""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, cast
+
+from flint import fmpq, fmpq_mat, fmpq_poly
+
+from lmi.certificate import ExactPlant
+from lmi.certificate_arithmetic import Exact
+
+__all__ = ["Reduced", "without_boundary"]
+
+CLOSE = 1e-15
+"""Distance of a computed root from the boundary, relative to 1 + its size, below which an irreducible factor that is
+its own mirror image is taken to have its roots there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """A plant without its unexcited boundary modes, and without its cross term.
+
+    Attributes:
+        U: basis (n, m) of the states that are kept, P = U Pi U'.
+        F: state matrix (m, m).
+        C: output matrix (l, m).
+        q: process noise (m, m).
+        V: measurement noise (l, l).
+    """
+
+    U: fmpq_mat
+    F: fmpq_mat
+    C: fmpq_mat
+    q: fmpq_mat
+    V: fmpq_mat
+
+    def lifted(self, Pi: Exact) -> Exact:
+        """Return U Pi U'."""
+        U = Exact.of([[_fraction(x) for x in row] for row in self.U.tolist()])
+        return U @ Pi @ U.T
+
+
+def without_boundary(plant: ExactPlant) -> Reduced | None:
+    """Remove the unexcited boundary modes, found exactly; None when there are none."""
+    A, C, W, V, N = (_rational(X) for X in (plant.A, plant.C, plant.W, plant.V, plant.N))
+    gain = V.solve(N.transpose()).transpose()
+    F, q = A - gain * C, W - gain * N.transpose()
+    Z = _unexcited(F, q)
+    if Z is None:
+        return None
+    T = (Z.transpose() * Z).solve(Z.transpose() * F.transpose() * Z)
+    annihilator = _boundary_factor(T.charpoly(), plant.is_continuous)
+    Y = _kernel(_evaluated(annihilator, T))
+    if Y is None:
+        return None
+    U = _kernel((Z * Y).transpose())
+    if U is None:
+        nothing = fmpq_mat(0, 0)
+        return Reduced(fmpq_mat(plant.n, 0), nothing, fmpq_mat(plant.l, 0), nothing, V)
+    gram, Ut = U.transpose() * U, U.transpose()
+    left = gram.solve(Ut)
+    return Reduced(U, left * F * U, C * U, left * q * left.transpose(), V)
+
+
+def _unexcited(F: fmpq_mat, q: fmpq_mat) -> fmpq_mat | None:
+    """Return a basis Z of the largest subspace with F'Z in its span and q Z = 0."""
+    Z = _kernel(q)
+    while Z is not None:
+        outside = _kernel(Z.transpose())
+        if outside is None:
+            return Z
+        Y = _kernel(outside.transpose() * F.transpose() * Z)
+        if Y is None or Y.ncols() == Z.ncols():
+            return Z if Y is not None else None
+        Z = Z * Y
+    return None
+
+
+def _boundary_factor(polynomial: fmpq_poly, continuous: bool) -> fmpq_poly:
+    """Return the product of the factors of a polynomial whose roots are on the boundary."""
+    product = fmpq_poly([1])
+    for factor, power in polynomial.factor()[1]:
+        if all(_on_boundary(complex(root), continuous) for root, _ in cast(Any, factor.numer().complex_roots())):
+            product *= factor**power
+    return product
+
+
+def _on_boundary(root: complex, continuous: bool) -> bool:
+    distance = root.real if continuous else abs(root) - 1
+    return abs(distance) <= CLOSE * (1 + abs(root))
+
+
+def _evaluated(polynomial: fmpq_poly, T: fmpq_mat) -> fmpq_mat:
+    """Return p(T)."""
+    n = T.nrows()
+    identity = fmpq_mat(n, n, [int(i == j) for i in range(n) for j in range(n)])
+    result = fmpq_mat(n, n)
+    for coefficient in reversed(polynomial.coeffs()):
+        result = result * T + identity * coefficient
+    return result
+
+
+def _kernel(X: fmpq_mat) -> fmpq_mat | None:
+    """Return a basis (columns) of the kernel, or None when it is trivial."""
+    reduced, rank = X.rref()
+    n = X.ncols()
+    if rank == n:
+        return None
+    rows = reduced.tolist()[:rank]
+    pivots = [next(j for j, x in enumerate(row) if x != 0) for row in rows]
+    free = [j for j in range(n) if j not in pivots]
+    basis = fmpq_mat(n, len(free))
+    for k, j in enumerate(free):
+        basis[j, k] = fmpq(1)
+        for i, pivot in enumerate(pivots):
+            basis[pivot, k] = -rows[i][j]
+    return basis
+
+
+def _rational(X: Exact) -> fmpq_mat:
+    return fmpq_mat([[fmpq(x, X.denominator) for x in row] for row in X.numerators])
+
+
+def _fraction(x: fmpq) -> Fraction:
+    return Fraction(int(x.p), int(x.q))
