@@ -1,1 +1,40 @@
 """Decide claims: proved, refuted, supported or undecided, with the reason."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from derive.claim import Answer, Verdict
+
+if TYPE_CHECKING:
+    from derive.interpret.statement import Statement
+
+__all__ = ["decide"]
+
+
+def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False) -> Answer:
+    """Decide a statement.
+
+    Args:
+        statement: a claim, read in its theory.
+        seconds: bound on the time.
+        explain: look for a counterexample without each hypothesis that a proof uses.
+
+    Returns:
+        proved with a certificate that was replayed, its hypotheses satisfiable; refuted with an exact counterexample;
+        or undecided, with the reason in its notes.
+
+    Raises:
+        InputError: assumptions that contradict the theory.
+    """
+    from derive.decide.kinds import is_matrix_claim
+
+    if statement.scalar:
+        from derive.scalar.decision import decide_scalar
+
+        return decide_scalar(statement, seconds=seconds)
+    if is_matrix_claim(statement):
+        from derive.decide.matrix import decide_matrix
+
+        return decide_matrix(statement, seconds, explain)
+    return Answer(Verdict.undecided, assumed=statement.assumed, notes=("there is no rule for claims of this kind",))

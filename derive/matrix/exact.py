@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from flint import fmpq, fmpq_mat
 
-__all__ = ["PROPERTIES", "hurwitz", "invertible", "positive_definite", "positive_semidefinite", "schur"]
+__all__ = ["PROPERTIES", "hurwitz", "invertible", "nonzero", "positive_definite", "positive_semidefinite", "schur"]
 
 
 def positive_semidefinite(matrix: fmpq_mat) -> bool:
@@ -40,6 +40,11 @@ def invertible(matrix: fmpq_mat) -> bool:
     return matrix.nrows() == matrix.ncols() and matrix.det() != 0
 
 
+def nonzero(matrix: fmpq_mat) -> bool:
+    """Decide M != 0."""
+    return any(x != 0 for x in matrix.entries())
+
+
 def _alternated(matrix: fmpq_mat) -> list[fmpq]:
     n = matrix.nrows()
     return [c * (-1) ** (n - k) for k, c in enumerate(list(matrix.charpoly())[:n])]
@@ -64,4 +69,5 @@ PROPERTIES = {
     "hurwitz": hurwitz,
     "schur": schur,
     "invertible": invertible,
+    "nonzero": nonzero,
 }

@@ -24,7 +24,7 @@ from derive.rules import (
     replay_positivity,
 )
 
-__all__ = ["prove_comparison", "prove_positive", "schur_complement", "schur_squares"]
+__all__ = ["prove_comparison", "prove_positive", "proposals", "rests", "schur_complement", "schur_squares"]
 
 Place = tuple[int, Word]  # a block row of the claim and a word u in it
 Form = dict[tuple[Place, Place], Fraction]
@@ -53,10 +53,10 @@ def prove_positive(
         inverses: letters for inverses, by the polynomial that they invert.
         seconds: bound on the time of each identity.
     """
-    for proposal in [tuple(squares)] if squares is not None else _proposals(claim, context):
+    for proposal in [tuple(squares)] if squares is not None else proposals(claim, context):
         try:
-            rests = _rests(claim, proposal, context)
-            terms = _prove_blocks(rests, context, seconds)
+            left = rests(claim, proposal, context)
+            terms = _prove_blocks(left, context, seconds)
             proof = Positivity(claim, proposal, terms) if terms is not None else None
             if proof and strict:
                 proof = _strict(proof, context, inverse, inverses or {}, seconds)
@@ -68,17 +68,17 @@ def prove_positive(
     return None
 
 
-def _rests(claim: Grid, squares: Sequence[Square], context: Context) -> Grid:
+def rests(claim: Grid, squares: Sequence[Square], context: Context) -> Grid:
     """Return what the squares leave of each block."""
-    flip, rests = context.alphabet.transpose, [list(row) for row in claim]
+    flip, left = context.alphabet.transpose, [list(row) for row in claim]
     for s in squares:
         core = context.fact(s.fact, "psd", "pd").matrix
-        for i, row in enumerate(rests):
+        for i, row in enumerate(left):
             for j in range(len(row)):
                 for k, core_row in enumerate(core):
                     for m, h in enumerate(core_row):
                         row[j] -= (s.factor[i][k] * h * flip(s.factor[j][m])).scale(s.coefficient, s.scalars)
-    return tuple(map(tuple, rests))
+    return tuple(map(tuple, left))
 
 
 def _prove_blocks(rests: Grid, context: Context, seconds: float) -> tuple[tuple[tuple[Term, ...], ...], ...] | None:
@@ -133,21 +133,22 @@ def _ratio(a: Poly, b: Poly) -> Fraction | None:
 
 
 # ------------------------------------------------------------------------------------------------ finding squares
-def _proposals(claim: Grid, context: Context) -> Iterator[tuple[Square, ...]]:
+def proposals(claim: Grid, context: Context) -> Iterator[tuple[Square, ...]]:
     """Iterate over sums of squares read off the claim: letters only, then with the facts on sums taken out first."""
     known = {n: f for n, f in context.facts.items() if f.kind in ("psd", "pd") and len(f.matrix) == 1}
     sums = [n for n, f in known.items() if len(f.matrix[0][0].terms) > 1]
     letters = [n for n, f in known.items() if len(f.matrix[0][0].terms) == 1]
+    letters.sort(key=lambda n: _is_identity(known[n]))
     seen: set[tuple[Square, ...]] = set()
     for order in (letters, *([name, *letters] for name in sums), sums + letters):
         proposal = _take_out(claim, {name: known[name] for name in order}, context)
-        if proposal is not None and proposal not in seen:
+        if proposal not in seen:
             seen.add(proposal)
             yield proposal
 
 
-def _take_out(claim: Grid, facts: Mapping[str, Fact], context: Context) -> tuple[Square, ...] | None:
-    """Return squares that account for the terms u H v' of the claim, fact by fact; None if one of them is negative."""
+def _take_out(claim: Grid, facts: Mapping[str, Fact], context: Context) -> tuple[Square, ...]:
+    """Return squares that account for the terms u H v' of the claim, fact by fact; negative forms are passed over."""
     squares: list[Square] = []
     rest = claim
     for name, fact in facts.items():
@@ -156,23 +157,27 @@ def _take_out(claim: Grid, facts: Mapping[str, Fact], context: Context) -> tuple
         if not positive:
             continue
         lead = min(positive, key=lambda k: (len(k[1]), k[1]))
-        for scalars, form in _forms(rest, lead[1], context).items():
+        for scalars, form in _forms(rest, lead[1], core.rows, context).items():
             found = _squares(claim, name, core, scalars, {p: c / core.terms[lead] for p, c in form.items()})
-            if found is None:
-                return None
-            squares += found
-            rest = _rests(rest, found, context)
+            if found:
+                squares += found
+                rest = rests(rest, found, context)
     return tuple(squares)
 
 
-def _forms(grid: Grid, h: Word, context: Context) -> dict[Scalars, Form]:
-    """Return the quadratic forms sum c u h v' in the claim, by their scalars >= 0."""
+def _is_identity(fact: Fact) -> bool:
+    return set(fact.matrix[0][0].terms) == {((), ())}
+
+
+def _forms(grid: Grid, h: Word, size: str, context: Context) -> dict[Scalars, Form]:
+    """Return the quadratic forms sum c u h v' in the claim, h of the given size, by their scalars >= 0."""
     forms: dict[Scalars, Form] = {}
     for i, row in enumerate(grid):
         for j, block in enumerate(row):
             for (m, w), c in block.terms.items():
                 at = _split(w, h)
-                if at is not None and context.nonnegative.issuperset(m):
+                between = context.alphabet.word_shape(w[:at], block.rows)[1] if at is not None else ""
+                if at is not None and between == size and context.nonnegative.issuperset(m):
                     v = tuple(context.alphabet.flip(a) for a in reversed(w[at + len(h) :]))
                     forms.setdefault(m, {})[(i, w[:at]), (j, v)] = c
     return forms

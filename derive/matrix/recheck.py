@@ -164,6 +164,8 @@ def _holds(kind: str, matrix: Matrix) -> bool:
             return stable(matrix, discrete=kind == "schur")
         case "invertible":
             return eliminate(matrix, [Fraction(0)] * len(matrix)) is not None
+        case "nonzero":
+            return not _is_zero(matrix)
         case _:
             return True
 
@@ -173,7 +175,9 @@ def _is_zero(matrix: Matrix) -> bool:
 
 
 def _fails(relation: str, left: Matrix, right: Matrix) -> bool:
-    if relation == "=":
-        return left != right
+    if relation in ("=", "≠", "false"):
+        return relation == "false" or (relation == "=") == (left != right)
+    if relation == "invertible":
+        return eliminate(left, [Fraction(0)] * len(left)) is None
     difference = [[x - y for x, y in zip(r, s, strict=True)] for r, s in zip(left, right, strict=True)]
-    return not definite(difference, strictly=relation == "≻")
+    return not definite(difference, strictly=relation in ("≻", ">"))

@@ -24,7 +24,7 @@ from derive.matrix.recheck import confirm
 if TYPE_CHECKING:
     from flint import fmpq, fmpq_mat
 
-__all__ = ["refute"]
+__all__ = ["refute", "satisfy"]
 
 ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried; tries of a size
 TRIES = 2000  # attempts at scalars
@@ -39,8 +39,8 @@ def refute(
         lhs: the left side.
         rhs: the right side, of the same type.
         problem: the hypotheses; those that bear on the claim hold exactly at what is returned.
-        relation: '=', or '⪰', '≻' in the Loewner order.
-        trace: compare the traces.
+        relation: '=', '≠', or '⪰', '≻' in the Loewner order; 'invertible' says that lhs is, 'false' nothing true.
+        trace: compare the traces, by '=', '≠', '≥' or '>'.
         seconds: bound on the time.
 
     Returns:
@@ -69,6 +69,28 @@ def refute(
         if attempt.fails(instance):
             found = attempt.report(_simplified(attempt, instance, deadline))
             if confirm(found, lhs, rhs, problem):
+                return found
+    return None
+
+
+def satisfy(problem: Hypotheses, polys: Sequence[Poly], *, seconds: float = 2.0) -> Counterexample | None:
+    """Search for an instance of the hypotheses that bear on some polynomials.
+
+    Returns:
+        The instance, which says that the hypotheses do not contradict each other, or None if nothing was found.
+    """
+    deadline = time.monotonic() + seconds
+    plans = make_plans(problem, polys)
+    if not plans:
+        problem, polys = problem.at_start(), [at_start(p) for p in polys]
+        plans = make_plans(problem, polys)
+    nothing = Poly({}, "1", "1")
+    for attempt, instance in _candidates([Attempt(problem, plan, nothing, nothing, "false", False) for plan in plans]):
+        if time.monotonic() > deadline:
+            return None
+        if attempt.fails(instance):
+            found = attempt.report(instance)
+            if confirm(found, nothing, nothing, problem):
                 return found
     return None
 
@@ -124,11 +146,16 @@ class Attempt:
     def _refuted(self, instance: Instance) -> bool:
         from derive.matrix.exact import positive_definite, positive_semidefinite
 
+        if self.relation == "false":
+            return True
+        if self.relation == "invertible":
+            return instance.evaluate(self.lhs).det() == 0
         if self.trace:
-            return instance.trace(self.lhs) != instance.trace(self.rhs)
+            gap = instance.trace(self.lhs) - instance.trace(self.rhs)
+            return {"=": gap != 0, "≠": gap == 0, "≥": gap < 0, ">": gap <= 0}[self.relation]
         difference = instance.evaluate(self.lhs) - instance.evaluate(self.rhs)
-        if self.relation == "=":
-            return any(x != 0 for x in difference.entries())
+        if self.relation in ("=", "≠"):
+            return (self.relation == "=") == any(x != 0 for x in difference.entries())
         return not (positive_definite if self.relation == "≻" else positive_semidefinite)(difference)
 
     def report(self, instance: Instance) -> Counterexample:

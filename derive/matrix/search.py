@@ -10,7 +10,7 @@ from derive.kernel import Alphabet, Certificate, Poly, Term, bound, sample
 from derive.matrix.completion import Completion, Step, accumulate
 from derive.matrix.order import Codec, Encoded, weigh
 
-__all__ = ["prove"]
+__all__ = ["declare", "prove"]
 
 ROUNDS = 100  # of rotation under a trace, or of sampling by deltas
 TRACE = "@"  # tr I of a dimension as a letter: "@n"
@@ -59,7 +59,7 @@ def prove(
     codec = Codec(alphabet, weigh(relations, eliminate))
     goal: Encoded = codec.encode(claim)
     completion = Completion(codec, max_degree, gaps=_gaps(goal, relations, codec))
-    origin = _declare(completion, relations)
+    origin = declare(completion, relations)
     sizes = _by_size(goal, claim.rows, codec) if trace else {claim.rows: goal}
     steps: list[Step] = []
     while True:
@@ -91,7 +91,7 @@ def _reduce(completion: Completion, poly: Encoded, dimension: str) -> tuple[Enco
     return poly, steps
 
 
-def _declare(completion: Completion, relations: Mapping[str, Poly]) -> dict[int, tuple[str, bool]]:
+def declare(completion: Completion, relations: Mapping[str, Poly]) -> dict[int, tuple[str, bool]]:
     """Add the relations and their transposes, smallest first; return the name behind each node."""
     codec, sources = completion.codec, []
     for name, relation in relations.items():

@@ -1,0 +1,52 @@
+"""Which decision a statement calls for."""
+
+from __future__ import annotations
+
+from derive.decide.parts import is_trace
+from derive.functions import is_scalar
+from derive.interpret.statement import Statement
+from derive.terms import (
+    Block,
+    Delta,
+    Dot,
+    Equation,
+    Expect,
+    Gradient,
+    Identity,
+    Image,
+    Integral,
+    Inverse,
+    Neg,
+    Number,
+    Product,
+    Sum,
+    Symbol,
+    Term,
+    Trace,
+    Transpose,
+    Zero,
+    walk,
+)
+
+__all__ = ["is_matrix_claim"]
+
+MATRIX: tuple[type[Term], ...] = (
+    Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace, Gradient,
+    Block, Image,
+)  # fmt: skip
+
+
+def is_matrix_claim(statement: Statement) -> bool:
+    """Tell whether a statement is about matrices and linear combinations of traces only."""
+    return all(map(_is_matrix_equation, statement.equations))
+
+
+def _is_matrix_equation(equation: Equation) -> bool:
+    sides = equation.lhs, equation.rhs
+    if not all(isinstance(node, MATRIX) for side in sides for node in walk(side)):
+        return False
+    if any(map(is_trace, sides)):
+        return all(
+            is_trace(s) or s == Zero("", "") or s == Number(s.value if isinstance(s, Number) else 0) for s in sides
+        )
+    return not is_scalar(equation)

@@ -1,0 +1,95 @@
+"""How one equation or inequality of a claim is proved, and the replay of that proof. Part of the trust base."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from derive.decide.order import TraceOrder, check_trace_order
+from derive.derivation import Proof, Step, check
+from derive.kernel import Rejected
+from derive.terms import Equation, Gradient, Neg, Number, Product, Reading, Sum, Term, Trace, Zero, lower, lower_trace
+
+__all__ = ["Part", "Rule", "is_trace", "oriented", "replay_part", "rule_of"]
+
+Rule = Literal["identity", "trace", "gradient", "positivity", "comparison", "trace order"]
+
+
+@dataclass(frozen=True)
+class Part:
+    """The proof of one equation or inequality."""
+
+    rule: Rule
+    proof: Proof = Proof()
+    order: TraceOrder | None = None
+
+
+def replay_part(part: Part, equation: Equation, reading: Reading) -> None:
+    """Accept an equation or inequality by its proof, or raise Rejected."""
+    equation = oriented(equation, reading)
+    if part.rule == "trace order":
+        if part.order is None or part.proof != Proof() or equation.relation not in ("≥", ">"):
+            raise Rejected("an inequality between traces has a proof of its own")
+        claim = lower_trace(equation.lhs - equation.rhs, reading)
+        check_trace_order(part.order, claim, equation.relation == ">", reading.context)
+        return
+    if part.order is not None or part.rule not in ("identity", "trace", "gradient", "positivity", "comparison"):
+        raise Rejected("the proof is of another kind than the rule")
+    check(Step("claim", equation, part.rule, (), part.proof), reading, {})
+
+
+def oriented(equation: Equation, reading: Reading) -> Equation:
+    """Write an equation so that a zero stands on the right, with a type where it is needed.
+
+    0 = X is X = 0;  0 ⪰ X is -X ⪰ 0;  := is =
+    """
+    lhs, relation, rhs = equation.lhs, equation.relation, equation.rhs
+    relation = "=" if relation == ":=" else relation
+    if _is_zero(lhs) and not _is_zero(rhs):
+        lhs, rhs = (rhs if relation in ("=", "≠") else Neg(rhs)), Zero("", "")
+    if isinstance(rhs, Gradient) and not isinstance(lhs, Gradient) and relation == "=":
+        lhs, rhs = rhs, lhs
+    if _is_zero(rhs):
+        rhs = _zero_trace(lhs, reading) if is_trace(lhs) else Zero("", "")
+    return replace(equation, lhs=lhs, relation=relation, rhs=rhs)
+
+
+def _is_zero(term: Term) -> bool:
+    return isinstance(term, Zero) or (isinstance(term, Number) and term.value == 0)
+
+
+def _zero_trace(term: Term, reading: Reading) -> Term:
+    size = lower_trace(term, reading).rows
+    return Trace(Zero(size, size))
+
+
+def is_trace(term: Term) -> bool:
+    """Tell whether a term is a linear combination of traces."""
+    match term:
+        case Trace():
+            return True
+        case Neg(body):
+            return is_trace(body)
+        case Product((Number(), body)):
+            return is_trace(body)
+        case Sum(addends):
+            return all(map(is_trace, addends))
+        case _:
+            return False
+
+
+def rule_of(equation: Equation) -> Rule:
+    """Return the rule that fits an oriented equation or inequality."""
+    if equation.relation in ("⪰", "≻"):
+        return "positivity"
+    if equation.relation in ("≥", ">"):
+        return "trace order"
+    if isinstance(equation.lhs, Gradient):
+        return "gradient"
+    return "trace" if is_trace(equation.lhs) else "identity"
+
+
+def shape(equation: Equation, reading: Reading) -> tuple[int, int]:
+    """Return the number of block rows and columns of an equation between matrices."""
+    grid = lower(equation.lhs, reading)
+    return len(grid), len(grid[0])

@@ -1,0 +1,234 @@
+"""What one claim is decided with: its theory's reading, what was established on the way, and the provers over it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+
+from derive.claim import Counterexample
+from derive.context import names_of
+from derive.decide.ground import Introduced, Item, Lemma, accept
+from derive.kernel import Certificate, Poly, Rejected, Term, identity, replay
+from derive.matrix.bearing import bearing
+from derive.matrix.hypotheses import Hypotheses
+from derive.matrix.instance import unknowns
+from derive.matrix.positivity import prove_positive
+from derive.matrix.refute import refute
+from derive.matrix.sample import holds_at, sample
+from derive.matrix.search import prove
+from derive.rules import Fact, Grid, Positivity, Square
+from derive.terms import Equation, Reading, Zero, lower
+from derive.theory.claims.base import ClaimTheory
+
+SAMPLES = 2
+ATTEMPT = 1.5  # seconds for one search of a certificate
+
+
+def proof_reading(theory: ClaimTheory) -> Reading:
+    """Return what a proof may use: the theory without its cases, which hold of instances only."""
+    reading = theory.reading
+    cases = reading.real.cases
+    context = reading.context
+    relations = {n: p for n, p in context.relations.items() if not any(n in names_of(c, [n]) for c in cases)}
+    facts = {n: f for n, f in context.facts.items() if n not in cases}
+    return replace(reading, context=replace(context, relations=relations, facts=facts))
+
+
+def conditions(theory: ClaimTheory) -> dict[str, Fact] | None:
+    """Return the assumed relations that only instances know, X ≠ 0, as facts; None if one has another form."""
+    found: dict[str, Fact] = {}
+    for i, equation in enumerate(theory.conditions):
+        try:
+            grid = _difference(equation, theory.reading)
+        except Rejected:
+            return None
+        if equation.relation != "≠":
+            return None
+        found[f"condition {i + 1}"] = Fact("nonzero", grid)
+    return found
+
+
+def _difference(equation: Equation, reading: Reading) -> Grid:
+    left = lower(equation.lhs, reading)
+    if isinstance(equation.rhs, Zero) and not equation.rhs.rows:
+        return left
+    right = lower(equation.rhs, reading)
+    return tuple(tuple(p - q for p, q in zip(r, s, strict=True)) for r, s in zip(left, right, strict=True))
+
+
+@dataclass
+class Workspace:
+    """A reading that grows while a claim is decided, and the time that is left."""
+
+    theory: ClaimTheory
+    deadline: float
+    reading: Reading = field(init=False)
+    items: list[Item] = field(default_factory=list[Item])
+
+    def __post_init__(self) -> None:
+        self.reading = proof_reading(self.theory)
+
+    # -------------------------------------------------------------------------------------------- what is known
+    @property
+    def left(self) -> float:
+        """Seconds that are left."""
+        return max(self.deadline - time.monotonic(), 0.0)
+
+    @property
+    def attempt(self) -> float:
+        """Seconds for one search of a certificate."""
+        return min(self.left, ATTEMPT)
+
+    def take(self, *items: Item) -> None:
+        """Accept lemmas or inverses, and keep them for the certificate."""
+        self.reading = accept(items, self.reading)
+        self.items += items
+
+    def fresh(self) -> str:
+        """Return a name for the next inverse."""
+        return f"inverse {1 + sum(isinstance(i, Introduced) for i in self.items)}"
+
+    def inverse(self, poly: Poly) -> Poly | None:
+        """Return the letter for the inverse of a matrix or of its transpose, if there is one."""
+        alphabet = self.reading.context.alphabet
+        for candidate, turned in ((poly, False), (alphabet.transpose(poly), True)):
+            name = self.reading.inverses.get(candidate)
+            if name is not None:
+                return Poly({((), (alphabet.flip(name) if turned else name,)): 1}, poly.cols, poly.rows)
+        return None
+
+    def problem(self) -> Hypotheses | None:
+        """Return what a counterexample has to satisfy; None if not all of it can be tested."""
+        extra = conditions(self.theory)
+        if extra is None:
+            return None
+        context, full = self.reading.context, self.theory.reading.context
+        relations = {**{n: p for n, p in full.relations.items() if n not in context.relations}, **context.relations}
+        letters = {name: poly for poly, name in self.reading.inverses.items()}
+        facts = {**full.facts, **extra}
+        return Hypotheses(context.alphabet, relations, facts, letters, context.nonnegative)
+
+    def equations(self, every_gain: bool) -> Hypotheses:
+        """Return the equations that a proof may use, without those of the optimal gain if asked so."""
+        context = self.reading.context
+        relations, optimal = context.relations, self.theory.optimal
+        if every_gain:
+            relations = {n: p for n, p in relations.items() if not any(n in names_of(o, [n]) for o in optimal)}
+        inverses = {name: poly for poly, name in self.reading.inverses.items()}
+        return Hypotheses(context.alphabet, relations, {}, inverses, context.nonnegative)
+
+    # -------------------------------------------------------------------------------------------- provers
+    def prove(self, claim: Poly, trace: bool = False, every_gain: bool | None = None) -> Certificate | None:
+        """Search for a proof of claim = 0 from few equations first; what is found is replayed.
+
+        Inverses alone; then everything but the optimal gain; then everything.
+        """
+        stages = self._stages(claim, every_gain)
+        for i, relations in enumerate(stages):
+            if i and relations == stages[i - 1]:
+                continue
+            found = self._prove(claim, relations, trace)
+            if found:
+                return found
+        return None
+
+    def _stages(self, claim: Poly, every_gain: bool | None) -> list[Mapping[str, Poly]]:
+        letters = unknowns(claim)
+        any_gain, all_ = (self.equations(flag) for flag in (True, False))
+        known = {f"{name}.{side}" for name in any_gain.inverses for side in ("left", "right", "value")}
+        stages: list[Mapping[str, Poly]] = []
+        for problem in [any_gain] + [all_] * (not every_gain):
+            bears = bearing(problem, letters)
+            near = {n for name in bears.inverses for n in names_of(name, problem.relations)}
+            if not stages:
+                own = {n for name in bears.inverses if name in letters for n in names_of(name, problem.relations)}
+                stages.append({n: p for n, p in problem.relations.items() if n in own & known})
+            chosen = set(bears.relations) | set(bears.central) | (near & known)
+            stages.append({n: p for n, p in problem.relations.items() if n in chosen})
+        return stages
+
+    def _prove(self, claim: Poly, relations: Mapping[str, Poly], trace: bool) -> Certificate | None:
+        """Search for a proof from some relations, unless a random instance of them tells that there is none."""
+        context = self.reading.context
+        inverses = {name: poly for poly, name in self.reading.inverses.items() if f"{name}.left" in relations}
+        equations = Hypotheses(context.alphabet, relations, {}, inverses, context.nonnegative)
+        if claim.terms and not holds_at(self._samples(equations, claim), claim, trace):
+            return None
+        found = prove(claim, relations, context.alphabet, trace=trace, seconds=self.attempt)
+        if found:
+            replay(found, claim, context.relations, context.alphabet)
+        return found
+
+    def plausible(self, claim: Poly, trace: bool = False) -> bool:
+        """Tell whether claim = 0 holds at random instances of the equations that a proof may use."""
+        return not claim.terms or holds_at(self._samples(self.equations(False), claim), claim, trace)
+
+    def _samples(self, equations: Hypotheses, claim: Poly):
+        if any(s[0] in "∫δ" for m, _ in claim.terms for s in m):
+            return []
+        return sample(equations, [claim], SAMPLES)
+
+    def positive(
+        self, grid: Grid, strict: bool = False, squares: Sequence[Square] | None = None, inverse: Poly | None = None
+    ) -> Positivity | None:
+        """Search for a proof of G ⪰ 0, or G ≻ 0."""
+        context = self.reading.context
+        return prove_positive(
+            grid,
+            replace(context, relations=self.relations_on(p for row in grid for p in row)),
+            squares,
+            strict=strict,
+            inverse=inverse,
+            inverses=self.reading.inverses,
+            seconds=self.attempt,
+        )
+
+    def relations_on(self, polys: Iterable[Poly], every_gain: bool = False) -> dict[str, Poly]:
+        """Return the relations that bear on some polynomials."""
+        problem = self.equations(every_gain)
+        bears = bearing(problem, set[str]().union(*map(unknowns, polys)))
+        near = {n for name in bears.inverses for n in names_of(name, problem.relations)}
+        chosen = set(bears.relations) | set(bears.central) | near
+        return {n: p for n, p in problem.relations.items() if n in chosen}
+
+    def lemma(self, name: str, poly: Poly, positivity: Positivity, strict: bool = False) -> str:
+        """Take up M ⪰ 0 or M ≻ 0 as a fact, and return its name."""
+        if name not in self.reading.context.facts:
+            self.take(Lemma(name, "pd" if strict else "psd", ((poly,),), positivity))
+        return name
+
+    def inverse_is_positive(self, poly: Poly) -> str | None:
+        """Return the name of the fact M^-1 ≻ 0 for M ≻ 0 with a letter for its inverse; it is proved when missing."""
+        context = self.reading.context
+        letter = self.inverse(poly)
+        known = next((n for n, f in context.facts.items() if f.kind == "pd" and f.matrix == ((poly,),)), None)
+        if letter is None or known is None:
+            return None
+        found = next((n for n, f in context.facts.items() if f.kind == "pd" and f.matrix == ((letter,),)), None)
+        if found:
+            return found
+        square = Square(Fraction(1), (), ((letter,),), known)
+        proof = self.positive(((letter,),), True, [square], poly)
+        ((_, (name,)),) = letter.terms
+        return self.lemma(f"{name} > 0", letter, proof, strict=True) if proof else None
+
+    def refute(
+        self, lhs: Poly, rhs: Poly | None = None, relation: str = "=", trace: bool = False, seconds: float = 2.0
+    ) -> Counterexample | None:
+        """Search for an exact instance of all hypotheses where lhs relation rhs fails."""
+        problem = self.problem()
+        zero = Poly({}, lhs.rows, lhs.cols)
+        if problem is None:
+            return None
+        bound = min(self.left, seconds)
+        return refute(lhs, zero if rhs is None else rhs, problem, relation=relation, trace=trace, seconds=bound)
+
+    def proves_inverse(self, of: Poly, by: Poly) -> tuple[tuple[Term, ...], tuple[Term, ...]] | None:
+        """Return the addends of M X = I and X M = I."""
+        if (by.rows, by.cols) != (of.cols, of.rows):
+            return None
+        right = self.prove(of * by - identity(of.rows))
+        left = self.prove(by * of - identity(of.rows)) if right else None
+        return (right.terms, left.terms) if right and left else None
