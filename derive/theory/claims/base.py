@@ -155,9 +155,12 @@ FLAGS = ("random", "uncentred", "constant", "parameters", "nonnegative", "comple
 
 def copy(theory: Theory, symbols: Mapping[str, Symbol] | None = None) -> Theory:
     """Return a theory with the same letters, to which declarations may be added without changing the first."""
-    flags = {name: set(getattr(theory, name)) for name in FLAGS}
-    declared, kept = dict(theory.declared) if symbols is None else {}, theory.symbols if symbols is None else symbols
-    return Theory(theory.key, theory.title, dict(kept), declared, families=dict(theory.families), **flags)
+    made = Theory(theory.key, theory.title, dict(theory.symbols if symbols is None else symbols))
+    made.declared = dict(theory.declared) if symbols is None else {}
+    made.families = dict(theory.families)
+    for name in FLAGS:
+        setattr(made, name, set(getattr(theory, name)))
+    return made
 
 
 def indexed_name(prototype: str, index: str) -> str:

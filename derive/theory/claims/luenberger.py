@@ -7,6 +7,7 @@ a letter S in the claim the noises are uncorrelated.
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 from derive.context import Theory
 from derive.terms import Expect, Glyph, Term, Zero, block
@@ -139,7 +140,7 @@ def _transient(d: Draft, letter: str, numbers: dict[int, set[str]], cross: bool)
     if signals:
         indices = [index_at(letter, number) for number in range(first, last + 1)]
         _moments(d, indices, cross)
-        for before, after in zip(indices, indices[1:], strict=False):
+        for before, after in pairwise(indices):
             _dynamics(d, before, after)
 
 

@@ -1,0 +1,215 @@
+"""Relations that are given: they define new letters, add hypotheses, or override what the theory declares."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from derive.context import Declared, DeclaredFact, Theory, terms_of
+from derive.interpret.names import spell
+from derive.latex import plain
+from derive.latex import syntax as s
+from derive.terms import Dot, Equation, Expect, Symbol, Term, walk
+from derive.theory.claims.base import ClaimTheory, add_indexed, copy
+
+if TYPE_CHECKING:
+    from derive.interpret.reader import Reader
+
+OF_MATRICES = ("=", "⪰", "≻")
+
+
+class Assumptions:
+    """What is given for one statement."""
+
+    def __init__(self, reader: Reader) -> None:
+        self.reader = reader
+        self.found: list[tuple[Equation, bool]] = []  # and whether it defines a new letter
+        self.names: tuple[str, ...] = ()
+        self.cache: list[Equation] | None = None
+
+    def read(self, node: s.Related) -> None:
+        """Take up one relation."""
+        reader = self.reader
+        reader.open = True
+        try:
+            if not (self._dimension(node) or self._membership(node) or self._function(node) or self._definition(node)):
+                from derive.interpret.meaning import compared
+
+                self.found += [(e, False) for e in compared(node, reader)]
+        finally:
+            reader.open = False
+
+    def _dimension(self, node: s.Related) -> bool:
+        """Take up l = 1, which makes a dimension 1."""
+        match node:
+            case s.Related((s.Name(letter, (), "", ""), s.Digits(value)), ("=",)) if value == 1:
+                sizes = self.reader.theory.theory.sizes()
+                if letter in sizes and not isinstance(self._known(letter), Symbol):
+                    self.reader.shapes.count += 1
+                    self.reader.shapes.known[letter] = "1"
+                    return True
+                return False
+            case _:
+                return False
+
+    def _known(self, spelled: str) -> Term | None:
+        term = self.reader.theory.names.get(spelled)
+        return term if isinstance(term, Symbol) and not term.scalar else None
+
+    def _membership(self, node: s.Related) -> bool:
+        r"""Take up G \in \mathbb{R}^{n \times l}, which introduces a letter."""
+        match node:
+            case s.Related((s.Name() as name, s.Raised(s.Name("R"), size)), ("∈",)):
+                sizes = [x.letter for x in s.walk(size) if isinstance(x, s.Name)]
+                if self.reader.named(name) is None and 1 <= len(sizes) <= 2:
+                    symbol = self.reader.introduce(name)
+                    wanted = (sizes[0], sizes[1] if len(sizes) == 2 else "1")
+                    if not symbol.scalar:
+                        self.reader.shapes.agree((symbol.rows, symbol.cols), wanted)
+                    return True
+                return True
+            case _:
+                return False
+
+    def _function(self, node: s.Related) -> bool:
+        """Take up L(s) = ..., which stands for its right-hand side wherever it is applied."""
+        match node:
+            case s.Related((s.Applied(s.Name() as head, (s.Name(parameter, (), "", ""),)), body), ("=" | ":=",)):
+                spelled = spell(head, self.reader.notation)
+                if f"{spelled}({parameter})" in self.reader.theory.names or self.reader.named(head) is not None:
+                    return False
+                self.reader.functions[spelled] = parameter, body
+                return True
+            case _:
+                return False
+
+    def _definition(self, node: s.Related) -> bool:
+        """Take up Z = C P C' + R, which defines a letter that the theory does not know."""
+        match node:
+            case s.Related((s.Name() as name, body), ("=" | ":=",)) if not name.accents or "dot" not in name.accents:
+                if self.reader.named(name) is not None or name.letter == "I":
+                    return False
+                term, shape = self.reader.read(body)
+                symbol = self.reader.introduce(name)
+                if shape is None:
+                    symbol = replace(symbol, rows="", cols="", scalar=True)
+                else:
+                    symbol = replace(symbol, rows=shape[0], cols=shape[1], scalar=False)
+                self.reader.new[spell(name, self.reader.notation)] = symbol
+                self.found.append((Equation(symbol, "=", term), True))
+                return True
+            case _:
+                return False
+
+    # -------------------------------------------------------------------------------------------- result
+    def settled(self) -> list[Equation]:
+        """Return the given equations with all dimensions found."""
+        if self.cache is None:
+            settle = self.reader.shapes.settle
+            self.cache = [Equation(settle(e.lhs), e.relation, settle(e.rhs)) for e, _ in self.found]
+        return self.cache
+
+    def extend(self, theory: ClaimTheory) -> ClaimTheory:
+        """Return the theory with what is given."""
+        if not (self.found or self.reader.new or self.reader.roots):
+            return theory
+        made = copy(theory.theory)
+        letters = theory.outline.letters if theory.outline else made
+        for symbol in self.reader.new.values():
+            _add(made, self.reader.shapes.settled_symbol(symbol))
+        for root, of in self.reader.roots.values():
+            _add_root(made, root, of)
+        names: list[str] = []
+        conditions: list[Equation] = []
+        for (_, defines), equation in zip(self.found, self.settled(), strict=True):
+            for symbol in (n for t in (equation.lhs, equation.rhs) for n in walk(t) if isinstance(n, Symbol)):
+                if symbol.name not in made.symbols:
+                    add_indexed(made, letters, symbol.name)
+            name = _fresh(plain(equation), made)
+            names.append(name)
+            if self._is_of_matrices(equation):
+                self._declare(name, equation, defines, made)
+            else:
+                conditions.append(equation)
+        self.names = tuple(names)
+        optimal, proved = theory.optimal & made.declared.keys(), theory.proved_by
+        kept = {k: v for k, v in proved.items() if k in made.declared}
+        return replace(theory, theory=made, optimal=optimal, proved_by=kept,
+                       conditions=(*theory.conditions, *conditions))  # fmt: skip
+
+    def _is_of_matrices(self, equation: Equation) -> bool:
+        return equation.relation in OF_MATRICES and not self.reader.scalar and not _is_number(equation)
+
+    def _declare(self, name: str, equation: Equation, defines: bool, made: Theory) -> None:
+        if defines and isinstance(equation.lhs, Symbol):
+            made.define(name, equation.lhs, equation.rhs, "given")
+            return
+        for old in overridden(equation, made):
+            del made.declared[old]
+        made.assume(name, equation.lhs, equation.relation, equation.rhs, "given")
+
+
+def _is_number(equation: Equation) -> bool:
+    from derive.functions import is_scalar
+
+    return is_scalar(equation)
+
+
+def _add(made: Theory, symbol: Symbol) -> None:
+    made.symbols[symbol.name] = symbol
+    if not symbol.scalar:
+        made.constant.add(symbol.name)
+        made.parameters.add(symbol.name)
+
+
+def _add_root(made: Theory, root: Symbol, of: Symbol) -> None:
+    """Declare the root of a matrix, positive definite if that is known to be."""
+    _add(made, root)
+    strict = any(
+        isinstance(d, Declared) and (d.statement.lhs, d.statement.relation) == (of, "≻") for d in made.declared.values()
+    )
+    made.define(f"{root.name} squared", root * root, of, "the root of a positive matrix")
+    made.assume(f"{root.name} positive", root, "≻" if strict else "⪰", text="the root is the positive one")
+    if strict:
+        made.inverse(f"{root.name} inverse", root, root.rows, symmetric=True, because=f"{root.name} positive")
+
+
+def _fresh(name: str, made: Theory) -> str:
+    while name in made.declared:
+        name += " (given)"
+    return name
+
+
+def overridden(equation: Equation, theory: Theory) -> list[str]:
+    """Return the declarations that a given equation takes the place of.
+
+    These are the definition of the same letter, moment or rate, and what was assumed of the letter's optimum. An
+    equation that a letter solves (P in the Riccati equation) stays.
+    """
+    lhs = equation.lhs
+    defines = equation.relation == "=" and isinstance(lhs, (Symbol, Dot, Expect)) and not _occurs(lhs, equation.rhs)
+    if not defines:
+        return []
+    found = [
+        name for name, item in theory.declared.items()
+        if isinstance(item, Declared) and item.statement.relation in ("=", ":=") and _same(item.statement.lhs, lhs)
+        and not _occurs(lhs, item.statement.rhs)
+    ]  # fmt: skip
+    cases = [
+        name for name, item in theory.declared.items()
+        if found and isinstance(lhs, Symbol) and isinstance(item, DeclaredFact) and item.case
+        and any(_occurs(lhs, t) for t in terms_of(item))
+    ]  # fmt: skip
+    return found + cases
+
+
+def _same(one: Term, two: Term) -> bool:
+    if isinstance(one, Symbol) and isinstance(two, Symbol):
+        return one.letter == two.letter
+    return one == two
+
+
+def _occurs(part: Term, whole: Term) -> bool:
+    if isinstance(part, Symbol):
+        return any(isinstance(n, Symbol) and n.name == part.name for n in walk(whole))
+    return any(n == part for n in walk(whole))

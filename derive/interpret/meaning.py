@@ -1,0 +1,150 @@
+"""From the syntax of a display to a statement: equations between typed terms, under what is assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from derive.interpret.arithmetic import adapted, common
+from derive.interpret.assume import Assumptions
+from derive.interpret.names import derivatives, spell
+from derive.interpret.reader import Reader
+from derive.interpret.shapes import Misfit, NotUnderstood, Typed
+from derive.interpret.statement import Statement
+from derive.latex import latex
+from derive.latex import syntax as s
+from derive.terms import Equation, Symbol, walk
+from derive.theory.claims.base import ClaimTheory
+
+ORDER = {"≥": ("⪰", "≥"), ">": ("≻", ">"), "⪰": ("⪰", "≥"), "≻": ("≻", ">")}
+TURNED = {"≤": "≥", "<": ">", "⪯": "⪰", "≺": "≻"}
+EXPECTED = "expected an equation or an inequality, as in P = A P A^T + Q or P \\succeq 0"
+
+
+def understand(
+    display: s.Display,
+    theory: ClaimTheory,
+    *,
+    assume: Sequence[s.Display] = (),
+    scalar: bool = False,
+    notation: Mapping[str, str] | None = None,
+) -> Statement:
+    """Return what a display says in a theory.
+
+    Args:
+        display: the formula as it was read.
+        theory: what its letters are read in.
+        assume: relations that are given; they add to the theory's declarations, or take the place of those that define
+            the same letter.
+        scalar: read every dimension as 1, where factors commute.
+        notation: letters that the formula uses for those of the theory, {"F": "A", "H": "C"}.
+
+    Raises:
+        NotUnderstood: a letter or a form that has no meaning in the theory, or two.
+        Misfit: shapes that do not fit.
+    """
+    reader = Reader(theory, scalar=scalar, notation=notation)
+    reader.moving = _moving((display, *assume), reader)
+    given = Assumptions(reader)
+    for relation in (r for d in assume for r in relations(d)):
+        given.read(relation)
+    equations = [e for relation in relations(display) for e in compared(relation, reader)]
+    equations = [settled(e, reader) for e in equations]
+    letters = {n.name for e in (*equations, *given.settled()) for side in (e.lhs, e.rhs) for n in walk(side)
+               if isinstance(n, Symbol)}  # fmt: skip
+    extended = given.extend(theory.about(letters))
+    return Statement(tuple(equations), symbols_of(equations), extended, scalar, given.names)
+
+
+# ------------------------------------------------------------------------------------------------ relations
+def relations(display: s.Display) -> Iterator[s.Related]:
+    """Iterate over the relations of a display."""
+    for statement in display.statements:
+        yield from _relations(statement)
+
+
+def _relations(node: s.Node) -> Iterator[s.Related]:
+    match node:
+        case s.Related():
+            yield node
+        case s.Listed(items):
+            for item in items:
+                yield from _relations(item)
+        case s.Cases(rows):
+            for value, condition in rows:
+                if condition is not None:
+                    raise NotUnderstood("a definition by cases: write each case as a formula, its condition assumed")
+                yield from _relations(value)
+        case _:
+            raise NotUnderstood(f"a formula without a relation: {EXPECTED}")
+
+
+def compared(node: s.Related, reader: Reader) -> list[Equation]:
+    """Return the equations and inequalities of a chain a = b <= c."""
+    sides = [reader.read(side) for side in node.sides]
+    return [relate(a, sign, b, reader) for a, sign, b in zip(sides, node.relations, sides[1:], strict=False)]
+
+
+def relate(lhs: Typed, sign: str, rhs: Typed, reader: Reader) -> Equation:
+    """Return one relation between two terms of the same shape, sides swapped where the page has ≤.
+
+    Raises:
+        Misfit: the shapes differ, or an order is stated between matrices that are not square.
+        NotUnderstood: a sign that is no relation between terms.
+    """
+    if sign in TURNED:
+        lhs, sign, rhs = rhs, TURNED[sign], lhs
+    shape = common([lhs, rhs], reader)
+    left, right = adapted(lhs, shape, reader), adapted(rhs, shape, reader)
+    if sign in ORDER:
+        if shape is not None and not reader.shapes.same(*shape):
+            raise Misfit(f"shapes: an order is one of square matrices; {latex(left)} is {reader.shapes.show(shape)}")
+        return Equation(left, ORDER[sign][shape is None], right)
+    if sign in ("=", ":=", "≠", "≡"):
+        return Equation(left, "≠" if sign == "≠" else "=", right)
+    raise NotUnderstood(f"{sign}: no relation that is decided; {EXPECTED}")
+
+
+def settled(equation: Equation, reader: Reader) -> Equation:
+    """Return an equation with all dimensions found."""
+    settle = reader.shapes.settle
+    return Equation(settle(equation.lhs), equation.relation, settle(equation.rhs))
+
+
+def _moving(displays: Sequence[s.Display], reader: Reader) -> frozenset[str]:
+    """Return the names that stand for functions of time: where \\dot P occurs, P and K mean P(t) and K(t)."""
+    names = reader.theory.names
+    heads = {id(n.head) for d in displays for n in s.walk(d) if isinstance(n, s.Applied)}
+    for display in displays:
+        for node in s.walk(display):
+            rate = node.body if isinstance(node, s.Differentiated) else node
+            moves = rate is not node or (isinstance(node, s.Name) and derivatives(node) > 0)
+            if (
+                moves
+                and isinstance(rate, s.Name)
+                and id(rate) not in heads
+                and spell(rate, reader.notation) + "()" in names
+            ):
+                return frozenset(name.removesuffix("()") for name in names if name.endswith("()"))
+    return frozenset()
+
+
+# ------------------------------------------------------------------------------------------------ showing
+def symbols_of(equations: Sequence[Equation]) -> tuple[Symbol, ...]:
+    """Return the letters of equations in the order of their first appearance."""
+    found = (n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol))
+    return tuple(dict.fromkeys(found))
+
+
+def echo(statement: Statement) -> str:
+    """Return the statement in canonical LaTeX, as it was understood."""
+    return r", \quad ".join(latex(equation) for equation in statement.equations)
+
+
+def shapes(statement: Statement) -> dict[str, str]:
+    """Return the shape of every letter, L: n×l."""
+    return {latex(symbol): shape_of(symbol, statement.scalar) for symbol in statement.symbols}
+
+
+def shape_of(symbol: Symbol, scalar: bool) -> str:
+    """Return a shape as it is shown: n×l, or a number."""
+    return "number" if symbol.scalar or scalar else f"{symbol.rows}×{symbol.cols}"
