@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
+from tests.benchmark.claims import claims
 from tests.benchmark.enclosures import enclosures
 from tests.benchmark.prover import prover
 from tests.benchmark.scalar import scalar
@@ -13,6 +14,7 @@ from tests.benchmark.startup import startup
 from tests.benchmark.table import Row
 
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
+    "claims": claims,
     "enclosures": enclosures,
     "prover": prover,
     "scalar": scalar,

@@ -1,4 +1,8 @@
-"""Random plants with their Riccati solutions by SciPy, as values of the letters of each theory."""
+"""Random plants with their Riccati solutions by SciPy, as values of the letters of each theory.
+
+The functions by which the corpus writes both sides of a claim also take the letters of SymPy, which the benchmark asks
+for its opinion.
+"""
 
 from __future__ import annotations
 
@@ -23,9 +27,27 @@ def matrix(value: Any) -> M:
     return np.asarray(value, dtype=float).view(M)
 
 
-def inv(value: Any) -> M:
+def inv(value: Any) -> Any:
     """Return the inverse."""
-    return matrix(np.linalg.inv(value))
+    return matrix(np.linalg.inv(value)) if isinstance(value, np.ndarray) else value.inverse()
+
+
+def sqrt(value: Any) -> Any:
+    """Return the square root."""
+    if isinstance(value, (float, np.ndarray)):
+        return np.sqrt(value)
+    import sympy
+
+    return sympy.sqrt(value)
+
+
+def larger(one: float, two: Any) -> Any:
+    """Return the maximum of two numbers."""
+    if isinstance(two, (float, np.ndarray)):
+        return np.maximum(one, two)
+    import sympy
+
+    return sympy.Max(one, two)
 
 
 def eye(n: int) -> M:
@@ -33,9 +55,9 @@ def eye(n: int) -> M:
     return matrix(np.eye(n))
 
 
-def tr(value: Any) -> float:
+def tr(value: Any) -> Any:
     """Return the trace."""
-    return float(np.trace(value))
+    return float(np.trace(value)) if isinstance(value, np.ndarray) else value.trace()
 
 
 def _square(rng: np.random.Generator, n: int, rank: int | None = None) -> M:

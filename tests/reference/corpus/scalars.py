@@ -3,12 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
 from tests.reference.corpus import Entry
+from tests.reference.corpus.plants import larger, sqrt
 
 KB, DT, CT, RD = "kalman-bucy", "luenberger-dt", "lqr-ct", "lqr-dt"
-sqrt: Any = np.sqrt
 
 
 def T(theory: str, latex: str, sides: Callable[..., Any] | None, *assume: str, why: str = "") -> Entry:
@@ -31,7 +29,7 @@ ENTRIES = [
     F(KB, r"P = \frac{A V + \sqrt{A^2 V^2 + C^2 V W}}{C^2}", None, why="C = 0 is allowed with A < 0, and there the formula divides by zero"),
     T(KB, r"P = \frac{V}{C^2} \left( A + \sqrt{A^2 + C^2 W / V} \right)", lambda A, C, V, W, P: (P, V / C**2 * (A + sqrt(A**2 + C**2 * W / V))), C0),
     F(KB, r"P = \frac{1}{C^2} \left( A + \sqrt{A^2 + C^2 W / V} \right)", lambda A, C, V, W, P: (P, 1 / C**2 * (A + sqrt(A**2 + C**2 * W / V))), C0),
-    T(KB, r"P = \frac{V}{C^2} \left( \sqrt{A^2 + C^2 W / V} - |A| + 2 \max\{0, A\} \right)", lambda A, C, V, W, P: (P, V / C**2 * (sqrt(A**2 + C**2 * W / V) - abs(A) + 2 * np.maximum(0, A))), C0),
+    T(KB, r"P = \frac{V}{C^2} \left( \sqrt{A^2 + C^2 W / V} - |A| + 2 \max\{0, A\} \right)", lambda A, C, V, W, P: (P, V / C**2 * (sqrt(A**2 + C**2 * W / V) - abs(A) + 2 * larger(0, A))), C0),
     F(KB, r"P = \frac{V}{C^2} \left( \sqrt{A^2 + C^2 W / V} - |A| \right)", lambda A, C, V, W, P: (P, V / C**2 * (sqrt(A**2 + C**2 * W / V) - abs(A))), C0),
     F(KB, r"P = \frac{V}{C^2} \left( \sqrt{A^2 + C^2 W / V} + |A| \right)", lambda A, C, V, W, P: (P, V / C**2 * (sqrt(A**2 + C**2 * W / V) + abs(A))), C0),
     T(KB, r"P = \frac{V}{C^2} \left( \sqrt{A^2 + C^2 W / V} - |A| \right)", None, C0, "A < 0", why="2 max(0, A) = 0"),
@@ -63,10 +61,10 @@ ENTRIES = [
     F(KB, r"P > 0", None, why="A < 0 and W = 0: P = 0"),
     T(KB, r"P > 0", lambda P: (P, 0), "W > 0"),
     T(KB, r"P > 0", None, "A > 0", why="an unstable plant: P >= 2 A V / C^2"),
-    T(KB, r"P \ge \max\{0, 2 A V / C^2\}", lambda A, C, V, P: (P, np.maximum(0, 2 * A * V / C**2)), C0),
+    T(KB, r"P \ge \max\{0, 2 A V / C^2\}", lambda A, C, V, P: (P, larger(0, 2 * A * V / C**2)), C0),
     T(KB, r"P \ge \frac{2 A V}{C^2}", lambda A, C, V, P: (P, 2 * A * V / C**2), C0),
     F(KB, r"P \ge \frac{3 A V}{C^2}", None, C0, why="A = C = V = 1, W = 0: 2 against 3"),
-    T(KB, r"P \le \frac{V}{C^2} \left( 2 \max\{0, A\} + |C| \sqrt{W / V} \right)", lambda A, C, V, W, P: (P, V / C**2 * (2 * np.maximum(0, A) + abs(C) * sqrt(W / V))), C0),
+    T(KB, r"P \le \frac{V}{C^2} \left( 2 \max\{0, A\} + |C| \sqrt{W / V} \right)", lambda A, C, V, W, P: (P, V / C**2 * (2 * larger(0, A) + abs(C) * sqrt(W / V))), C0),
     T(KB, r"P \le \frac{W}{2 |A|}", None, "A < 0", why="2 A P + W >= 0"),
     F(KB, r"P \le \frac{W}{4 |A|}", None, "A < 0", why="C = 0: P = W/(2|A|)"),
     F(KB, r"P \le \frac{\sqrt{V W}}{|C|}", None, C0, why="A = 1, C = V = 1, W = 0: 2 against 0"),
