@@ -26,7 +26,8 @@ class ClaimTheory:
 
     ``theory`` holds the symbols and declares what may be used; ``names`` gives the meaning of a spelled name (letter,
     accents, index: see derive.interpret.names); ``optimal`` are the declarations that hold for the optimal gain only;
-    ``proved_by`` names, for a declaration that the source does not make, the lecture and the step that proves it.
+    ``proved_by`` names, for a declaration that the source does not make, the lecture and the step that proves it;
+    ``added`` are hypotheses that no source states.
 
     A declared fact or hypothesis that is a ``case`` ("A - L C Schur") holds of every instance, so that a counterexample
     has to satisfy it, but no proof may use it: at the boundary it fails. ``conditions`` are assumed relations that the
@@ -40,6 +41,7 @@ class ClaimTheory:
     names: Mapping[str, Term]
     optimal: frozenset[str] = frozenset()
     proved_by: Mapping[str, Proved] = field(default_factory=dict[str, Proved])
+    added: frozenset[str] = frozenset()
     conditions: tuple[Equation, ...] = ()
     outline: Outline | None = field(default=None, compare=False, repr=False)
 
@@ -78,8 +80,10 @@ def about(outline: Outline, letters: frozenset[str]) -> ClaimTheory:
     """Return the claims' theory that bears on some letters."""
     draft = Draft(outline, letters)
     outline.declare(draft)
-    optimal, proved_by = frozenset(draft.optimal), draft.proved_by
-    return ClaimTheory(outline.key, outline.title, draft.theory, outline.names, optimal, proved_by, outline=outline)
+    optimal, added = frozenset(draft.optimal), frozenset(draft.added)
+    return ClaimTheory(
+        outline.key, outline.title, draft.theory, outline.names, optimal, draft.proved_by, added, outline=outline
+    )
 
 
 class Draft:
@@ -91,6 +95,7 @@ class Draft:
         plain = {name: s for name, s in letters.symbols.items() if not name.endswith("#")}
         self.theory = copy(letters, plain)
         self.optimal: set[str] = set()
+        self.added: set[str] = set()
         self.proved_by: dict[str, Proved] = {}
 
     def has(self, *names: str) -> bool:
@@ -117,6 +122,11 @@ class Draft:
             self.proved_by[name] = by
         if optimal:
             self.optimal.add(name)
+
+    def given(self, lecture: Theory, *names: str) -> None:
+        """Declare what a lecture's theory declares under some names."""
+        for name in names:
+            self.theory.declared[name] = lecture.declared[name]
 
     def define(
         self, name: str, lhs: Term, rhs: Term, text: str = "", *, by: Proved | None = None, optimal: bool = False

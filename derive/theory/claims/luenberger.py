@@ -1,16 +1,18 @@
 """What claims about the Luenberger observer in discrete time may use: P, L steady, P_k, L_k from step to step.
 
 Source: lecture notes "Optimal Luenberger Observer". The gain is the predictor's; L_f and P+ are the filter's. Without
-a letter S in the claim the noises are uncorrelated.
+a letter S in the claim the noises are uncorrelated; Q and R are constant, Q_k and R_k may vary from step to step.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
 from derive.context import Theory
-from derive.terms import Expect, Glyph, Term, Zero, block
+from derive.terms import Expect, Glyph, Symbol, Term, Zero, block
 from derive.theory.claims.base import Draft, Outline, count, index_at, split_index
 from derive.theory.luenberger_formulas import (
     any_gain,
@@ -50,6 +52,9 @@ def outline() -> Outline:
 
 def _families(t: Theory) -> None:
     """Declare the letters with an index."""
+    covariance(t, "Q_#", "n", Glyph("Q", sub="#"), "covariance of the process noise")
+    covariance(t, "R_#", "l", Glyph("R", sub="#"), "covariance of the measurement noise")
+    t.matrix("S_#", "n", "l", Glyph("S", sub="#"), meaning="cross-covariance", unit="[state] [output]")
     covariance(t, "P_#", "n", Glyph("P", sub="#"), "error covariance", parameter=True)
     covariance(t, "P+_#", "n", Glyph("P", sub="#", sup="+"), "covariance of the filtered error")
     L = t.matrix("L_#", "n", "l", Glyph("L", sub="#"), parameter=False, meaning="gain", unit="[state]/[output]")
@@ -72,7 +77,7 @@ def _names(t: Theory) -> dict[str, Term]:
     s = t.symbols
     names: dict[str, Term] = {k: s[k] for k in ("A", "B", "C", "Q", "R", "S", "P", "L", "L_f", "z")}
     names |= {"P^+": s["P+"], "P^-": s["P"], "L^f": s["L_f"], "P_∞": s["P"], "L_∞": s["L"]}
-    names |= {"Q_#": s["Q"], "R_#": s["R"], "S_#": s["S"]}
+    names |= {"Q_#": s["Q_#"], "R_#": s["R_#"], "S_#": s["S_#"]}
     names |= {"P_#": s["P_#"], "P_#^-": s["P_#"], "P_#^+": s["P+_#"], "L_#": s["L_#"]}
     names |= {"L_#^f": s["L^f_#"], "L_f,#": s["L^f_#"]}
     names |= {f"{k}_#": s[f"{k}_#"] for k in "xyuewv"}
@@ -84,27 +89,60 @@ def _names(t: Theory) -> dict[str, Term]:
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
-    cross = d.has("S")
-    _noise(d, cross)
-    if d.has(*STEADY):
-        _steady(d, cross)
     used: dict[str, dict[int, set[str]]] = {}
     for name in d.used:
         stem, index = split_index(name)
         if index and stem + "_#" in d.outline.letters.symbols:
             letter, number = count(index)
             used.setdefault(letter, {}).setdefault(number, set()).add(stem)
+    noise = Noise(d, used)
+    noise.declare()
+    if d.has(*STEADY):
+        _steady(d, noise.cross)
     for letter, numbers in used.items():
-        _transient(d, letter, numbers, cross)
+        _transient(d, letter, numbers, noise)
 
 
-def _noise(d: Draft, cross: bool) -> None:
-    Q, R, S = d.of("Q", "R", "S")
-    d.assume("Q >= 0", Q, "⪰", text="a covariance")
-    d.assume("R > 0", R, "≻", text="every output is noisy")
-    d.inverse("R^-1", R, "l", "R > 0")
-    if cross:
-        d.assume("steady joint noise", block([[Q, S], [S.T, R]]), "⪰", text="a joint covariance")
+@dataclass
+class Noise:
+    """Which noise covariances a claim writes with an index: those vary, the others are constant."""
+
+    d: Draft
+    used: Mapping[str, Mapping[int, set[str]]]
+
+    def __post_init__(self) -> None:
+        stems = set[str]().union(*(found for numbers in self.used.values() for found in numbers.values()))
+        self.varies = stems & {"Q", "R", "S"}
+        self.cross = self.d.has("S") or "S" in stems
+
+    def declare(self) -> None:
+        """Declare the constant covariances."""
+        d = self.d
+        Q, R, S = d.of("Q", "R", "S")
+        d.assume("Q >= 0", Q, "⪰", text="a covariance")
+        d.assume("R > 0", R, "≻", text="every output is noisy")
+        d.inverse("R^-1", R, "l", "R > 0")
+        if self.cross:
+            d.assume("steady joint noise", block([[Q, S], [S.T, R]]), "⪰", text="a joint covariance")
+
+    def at(self, index: str) -> list[Symbol]:
+        """Return the covariances of process and measurement noise at an index, and their cross-covariance."""
+        return [self.d.at(k, index) if k in self.varies else self.d.of(k)[0] for k in "QRS"]
+
+    def declare_at(self, index: str) -> None:
+        """Declare the covariances that vary; where a claim writes Q as well, they are all the same."""
+        d = self.d
+        Q, R, S = self.at(index)
+        if "Q" in self.varies:
+            d.assume(f"{Q.name} >= 0", Q, "⪰", text="a covariance")
+        if "R" in self.varies:
+            d.assume(f"{R.name} > 0", R, "≻", text="every output is noisy")
+            d.inverse(f"{R.name}^-1", R, "l", f"{R.name} > 0")
+        if self.cross and self.varies:
+            d.assume(f"joint noise at {index}", block([[Q, S], [S.T, R]]), "⪰", text="a joint covariance")
+        for name, symbol in zip("QRS", (Q, R, S), strict=True):
+            if name in self.varies and (d.has(name) or (d.has(*STEADY) and name != "S")):
+                d.assume(f"constant {symbol.name}", symbol, "=", d.of(name)[0], "the same at every time")
 
 
 def _steady(d: Draft, cross: bool) -> None:
@@ -126,20 +164,21 @@ def _steady(d: Draft, cross: bool) -> None:
         d.define("P+", after, P - P * C.T * sigma.inv * C * P)
 
 
-def _transient(d: Draft, letter: str, numbers: dict[int, set[str]], cross: bool) -> None:
+def _transient(d: Draft, letter: str, numbers: dict[int, set[str]], noise: Noise) -> None:
     """Declare covariances at every index that is used, and the steps between them."""
     first, last = min(numbers), max(numbers)
     needs_step = "L" in numbers[first] or (first == last and d.has("Q", "S"))
+    signals = any(stem in SIGNALS for stems in numbers.values() for stem in stems)
     if needs_step and (letter, first) not in (("k", -1), ("", 0)):
         first -= 1
-    signals = any(stem in SIGNALS for stems in numbers.values() for stem in stems)
-    for number in range(first, last + 1):
-        _covariance(d, index_at(letter, number), numbers.get(number, set()), reached=number > first)
-    for number in range(first, last):
-        _step(d, index_at(letter, number), index_at(letter, number + 1), cross)
+    indices = [index_at(letter, number) for number in range(first, last + 1)]
+    for i, index in enumerate(indices):
+        noise.declare_at(index)
+        _covariance(d, index, numbers.get(first + i, set()), noise, reached=i > 0)
+    for before, after in pairwise(indices):
+        _step(d, before, after, noise)
     if signals:
-        indices = [index_at(letter, number) for number in range(first, last + 1)]
-        _moments(d, indices, cross)
+        _moments(d, indices, noise)
         for before, after in pairwise(indices):
             _dynamics(d, before, after)
 
@@ -149,9 +188,9 @@ def named(name: str, index: str) -> str:
     return name if index in ("k", "k-1") else f"{name} at {index}"
 
 
-def _covariance(d: Draft, index: str, stems: set[str], *, reached: bool) -> None:
+def _covariance(d: Draft, index: str, stems: set[str], noise: Noise, *, reached: bool) -> None:
     """Declare P_k >= 0, the innovation covariance and its inverse, and the filter at an index."""
-    C, R, P = *d.of("C", "R"), d.at("P", index)
+    C, R, P = d.of("C")[0], noise.at(index)[1], d.at("P", index)
     d.assume(f"{P.name} >= 0", P, "⪰", text="a covariance", by=(LECTURE, "P_k >= 0") if reached else None)
     sigma, key = innovation(C, P, R), f"innovation covariance of {P.name}"
     d.assume(key, sigma, "≻", by=(LECTURE, "innovation covariance"))
@@ -163,9 +202,9 @@ def _covariance(d: Draft, index: str, stems: set[str], *, reached: bool) -> None
         d.assume(f"filtered covariance at {index}", after, "=", right, by=(LECTURE, "filtered covariance"))
 
 
-def _step(d: Draft, before: str, after: str, cross: bool) -> None:
+def _step(d: Draft, before: str, after: str, noise: Noise) -> None:
     """Declare the covariance recursion for any gain, and the optimal gain."""
-    A, C, Q, R, S = d.of("A", "C", "Q", "R", "S")
+    (A, C), (Q, R, S), cross = d.of("A", "C"), noise.at(before), noise.cross
     P, P_k, L = d.at("P", before), d.at("P", after), d.at("L", after)
     tail = " with cross-covariance" if cross else ""
     step = any_gain(A, C, L, P, Q, R, S if cross else None)
@@ -175,29 +214,29 @@ def _step(d: Draft, before: str, after: str, cross: bool) -> None:
 
 
 # ------------------------------------------------------------------------------------------------ signals
-def _moments(d: Draft, indices: list[str], cross: bool) -> None:
+def _moments(d: Draft, indices: list[str], noise: Noise) -> None:
     """Declare the covariances of noise and error, and that later noise is uncorrelated with what came before."""
-    Q, R, S = d.of("Q", "R", "S")
     for i, index in enumerate(indices):
+        Q, R, S = noise.at(index)
         e, w, v, P = (d.at(k, index) for k in ("e", "w", "v", "P"))
         zero = Zero("n", "l")
         d.define(f"Q at {index}", Expect(w * w.T), Q)
         d.define(f"R at {index}", Expect(v * v.T), R)
-        d.assume(f"w and v at {index}", Expect(w * v.T), "=", S if cross else zero)
+        d.assume(f"w and v at {index}", Expect(w * v.T), "=", S if noise.cross else zero)
         d.define(f"P at {index}", Expect(e * e.T), P)
         for later in indices[i:]:
             w_j, v_j = d.at("w", later), d.at("v", later)
-            for noise in (w_j, v_j):
-                d.assume(f"{e.name} and {noise.name}", Expect(e * noise.T), "=", Zero("n", noise.rows))
+            for one in (w_j, v_j):
+                d.assume(f"{e.name} and {one.name}", Expect(e * one.T), "=", Zero("n", one.rows))
                 if later != index:
-                    d.assume(f"{w.name} and {noise.name}", Expect(w * noise.T), "=", Zero("n", noise.rows))
-                    d.assume(f"{v.name} and {noise.name}", Expect(v * noise.T), "=", Zero("l", noise.rows))
-        _instant(d, index)
+                    d.assume(f"{w.name} and {one.name}", Expect(w * one.T), "=", Zero("n", one.rows))
+                    d.assume(f"{v.name} and {one.name}", Expect(v * one.T), "=", Zero("l", one.rows))
+        _instant(d, index, R)
 
 
-def _instant(d: Draft, index: str) -> None:
+def _instant(d: Draft, index: str, R: Symbol) -> None:
     """Declare output and error, and the filtered estimate, at an index."""
-    C, R = d.of("C", "R")
+    (C,) = d.of("C")
     x, xhat, y, e, v, P = (d.at(k, index) for k in ("x", "xhat", "y", "e", "v", "P"))
     d.define(f"output at {index}", y, C * x + v)
     d.define(f"error at {index}", e, xhat - x)
