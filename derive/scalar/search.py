@@ -28,7 +28,7 @@ from derive.real import (
 from derive.rules import Fact
 from derive.scalar.ideal import Form, Ideal, exact, multiply
 
-__all__ = ["closure", "prove_identity", "prove_sign"]
+__all__ = ["Remainders", "closure", "contradiction", "products", "prove_identity", "prove_sign"]
 
 BASIS = 40  # elements of the Groebner basis before signs are searched
 
@@ -88,7 +88,7 @@ def prove_sign(
     direct += [SignProduct(Fraction(1), (NEGATION,))] if against else []
     remainders = Remainders(ideal, facts)
     for d in range(degree + 1):
-        found = _contradiction(list(_products(facts, squares, d)) if d else direct, remainders)
+        found = contradiction(list(products(facts, squares, d)) if d else direct, remainders)
         if found:
             total = constant(0)
             for product in found:
@@ -99,7 +99,7 @@ def prove_sign(
     return None
 
 
-def _products(facts: Mapping[str, Fact], squares: Sequence[Poly], degree: int) -> Iterator[SignProduct]:
+def products(facts: Mapping[str, Fact], squares: Sequence[Poly], degree: int) -> Iterator[SignProduct]:
     """Iterate over products of facts, of one square and facts, and 1."""
     units = [name for name, fact in facts.items() if fact.kind != "nonzero"]
     pairs = [name for name, fact in facts.items() if fact.kind == "nonzero"]
@@ -142,7 +142,7 @@ class Remainders:
         return not product.squares and all(self.facts[name].kind != "nonnegative" for name in product.facts)
 
 
-def _contradiction(products: Sequence[SignProduct], remainders: Remainders) -> list[SignProduct] | None:
+def contradiction(products: Sequence[SignProduct], remainders: Remainders) -> list[SignProduct] | None:
     """Return products with coefficients whose sum is zero in the ideal, one of them positive."""
     columns = Columns([remainders.of(p.facts, p.squares) for p in products])
     columns.simplify()

@@ -1,0 +1,304 @@
+"""Search for a proof of a statement about real numbers: signs at sight, by factors, by z3, and certificates for them.
+
+Nothing here is believed: what is found is a tree of reasons that proof.py replays; where a reason is z3's word alone,
+the tree says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from math import comb, isqrt
+from time import monotonic
+from typing import Any
+
+from flint import arb
+
+from derive.interpret.statement import Statement
+from derive.kernel import Poly
+from derive.real import NEGATION, Sign, SignProduct, constant, contrary, sign_product
+from derive.rules import Fact
+from derive.scalar.flint_ring import FlintRing
+from derive.scalar.ideal import Ideal
+from derive.scalar.instances import Instances
+from derive.scalar.proof import Factor, Leaf, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of
+from derive.scalar.ratio import Beyond, Numbers, Ratio
+from derive.scalar.real_closed import Budget, Model, Question
+from derive.scalar.search import Remainders, contradiction, products
+from derive.scalar.system import Case, Split, System, sign_of, system
+
+__all__ = ["Failed", "Prover", "Unknown"]
+
+DEPTH = 7  # of the tree of cases
+TRIED = 24  # instances at which a sign is looked at before it is proved
+PRODUCTS = 300  # of facts, in one certificate of sign
+FALSE = {"≥": "positive", ">": "nonnegative", "≠": "="}  # of -p, where the claim on p fails
+
+
+class Failed(Exception):  # noqa: N818 - an answer
+    """What is needed is false; ``model`` is near numbers at which it fails, if z3 found them."""
+
+    def __init__(self, model: Model | None = None):
+        super().__init__("false")
+        self.model = model
+
+
+class Unknown(Exception):  # noqa: N818 - an answer
+    """It is not decided within the budget."""
+
+
+@dataclass
+class Prover:
+    """Proves a statement; ``deadline`` ends what the budget of z3 does not."""
+
+    statement: Statement
+    ring: FlintRing
+    names: Sequence[str]
+    deadline: float
+    without: frozenset[str] = frozenset()
+    certificates: bool = True
+    budget: Budget = field(default_factory=Budget)
+    systems: list[System] = field(default_factory=list[System])  # of the cases, as they end
+
+    def prove(self, cases: Sequence[Case] = ()) -> Tree | Leaf:
+        """Return a proof.
+
+        Raises:
+            Failed: the statement is false in a case.
+            Unknown: it is not decided within the budget.
+            Beyond: it is no statement about algebraic functions of real numbers.
+        """
+        try:
+            known = system(self.statement, self.ring, cases, self.without)
+            self.systems.append(known)
+            return Leaf(impossible=True) if known.impossible else self._leaf(known)
+        except Split as split:
+            if len(cases) >= DEPTH:
+                raise Unknown("too many cases") from None
+            above = self.prove([*cases, ("nonnegative", split.poly)])
+            return Tree(split.poly, above, self.prove([*cases, ("nonnegative", -split.poly)]))
+
+    def _leaf(self, known: System) -> Leaf:
+        search = _Search(self, known)
+        numbers = Numbers(self.ring, known.values, search)
+        for relation, poly in claims_of(self.statement, numbers):
+            for needed, p in needs_of(relation, poly, self.ring):
+                if not known_fact(known, p, needed):
+                    search.steps.append(search.reason(needed, p))
+        return Leaf(tuple(search.steps))
+
+
+class _Search:
+    """Answers what a term needs, and keeps the reasons."""
+
+    def __init__(self, prover: Prover, known: System):
+        self.prover, self.known, self.ring = prover, known, prover.ring
+        self.steps: list[Step] = []
+        self.instances = Instances(known, self.ring, prover.names)
+
+    # ------------------------------------------------------------------------------------- answers
+    def nonzero(self, poly: Any) -> None:
+        """Prove that a divisor is not zero."""
+        if not len(poly):
+            raise Failed
+        if not self.known.nonzero(poly):
+            self.steps.append(self.reason("≠", poly))
+
+    def sign(self, poly: Any) -> int:
+        """Prove the sign of a polynomial, or ask for two cases."""
+        try:
+            return sign_of(self.known, poly)
+        except Split:
+            pass
+        signs = self._signs(poly)
+        if not {1, -1} <= signs:
+            sign = -1 if -1 in signs else 1
+            try:
+                self.steps.append(Turned(sign, self.reason("≥", poly if sign > 0 else -poly)))
+                return sign
+            except Failed:
+                pass
+        raise Split(self.ring.poly(self._undecided(poly)))
+
+    def positive(self, poly: Any) -> bool:
+        """Tell whether a factor is positive at sight."""
+        return self.known.positive(poly)
+
+    def square(self, poly: Any) -> tuple[Any, Any]:
+        """Split a radicand into a square and a rest without square factors, and prove that it is not negative."""
+        if not len(poly):
+            q, s = self.ring.constant(Fraction(0)), self.ring.constant(Fraction(1))
+        else:
+            number, factors = self.ring.factors(poly)
+            outer, inner = _square_part(number)
+            q, s = self.ring.constant(outer), self.ring.constant(inner)
+            for f, e in factors:
+                for _ in range(e // 2):
+                    q = q * f
+                s = s * f if e % 2 else s
+        self.steps.append(Square(self.ring.poly(q), self.ring.poly(s)))
+        if not known_fact(self.known, s, "≥"):
+            self.steps.append(self.reason("≥", s))
+        return q, s
+
+    def root(self, poly: Any) -> Any:
+        """Return the root of a number without square factors."""
+        if poly == self.ring.constant(Fraction(1)):
+            return poly
+        return self.ring.letter(self.known.root(poly))
+
+    def function(self, kind: str, argument: Ratio) -> Ratio:
+        """Reject functions that are not algebraic."""
+        raise Beyond(f"{kind} is not decided between numbers")
+
+    # ------------------------------------------------------------------------------------- signs
+    def _signs(self, poly: Any) -> set[int]:
+        """Return the signs that a polynomial has at some instances: 1, 0, -1."""
+        values = [self.instances.value(poly, i) for i in self.instances.first(TRIED)]
+        return {sign for v in values for sign in (1, 0, -1) if _has(v, sign)}
+
+    def _undecided(self, poly: Any) -> Any:
+        """Return the first factor of odd power whose sign changes, or is not known."""
+        odd = [f for f, e in self.ring.factors(poly)[1] if e % 2]
+        for f in odd:
+            if {1, -1} <= self._signs(f):
+                return f
+        for f in odd:
+            try:
+                sign_of(self.known, f)
+            except Split:
+                return f
+        raise Unknown("a sign that is not decided")
+
+    def reason(self, relation: str, poly: Any) -> Reason:
+        """Prove a polynomial ≥ 0, > 0 or ≠ 0."""
+        if monotonic() > self.prover.deadline:
+            raise Unknown("no time left")
+        if known_fact(self.known, poly, relation):
+            return Reason("known")
+        self._look(relation, poly)
+        product = self._by_factors(relation, poly)
+        return product if product is not None else self._by_z3(relation, poly)
+
+    def _look(self, relation: str, poly: Any) -> None:
+        """Fail if an instance shows that the claim is false."""
+        signs = self._signs(poly)
+        if (0 in signs and relation != "≥") or (-1 in signs and relation != "≠"):
+            raise Failed
+
+    def _by_factors(self, relation: str, poly: Any) -> Reason | None:
+        number, factors = self.ring.factors(poly)
+        if len(factors) == 1 and factors[0][1] == 1:
+            return None
+        found, total = list[Factor](), 1 if number > 0 else -1
+        for f, e in factors:
+            factor = self._factor(relation, f, e)
+            if factor is None:
+                return None
+            found.append(factor)
+            total *= factor.sign if relation != "≠" and e % 2 else 1
+        return Reason("product", number, tuple(found)) if relation == "≠" or total > 0 else None
+
+    def _factor(self, relation: str, f: Any, power: int) -> Factor | None:
+        plain = self.ring.poly(f)
+        if relation == "≥" and power % 2 == 0:
+            return Factor(plain, power, 1)
+        if relation == "≠" or power % 2 == 0:
+            return Factor(plain, power, 1, self.reason("≠", f))
+        try:
+            sign = sign_of(self.known, f)
+        except Split:
+            signs = self._signs(f)
+            if {1, -1} <= signs:
+                return None
+            sign = -1 if -1 in signs else 1
+        try:
+            return Factor(plain, power, sign, self.reason(relation, f if sign > 0 else -f))
+        except Failed:
+            return None
+
+    # ------------------------------------------------------------------------------------- z3 and certificates
+    def _by_z3(self, relation: str, poly: Any) -> Reason:
+        facts = {name: (kind, self.ring.poly(p)) for name, (kind, p) in self.known.facts.items()}
+        facts |= {name: ("=", self.ring.poly(p)) for name, p in self.known.relations.items()}
+        choices = [[(kind, self.ring.poly(p)) for kind, p in choice] for choice in self.known.alternatives]
+        plain = self.ring.poly(poly)
+        against = (FALSE[relation], plain if relation == "≠" else -plain)
+        question, budget = Question([*facts.values(), against], choices), self.prover.budget
+        answer = question.possible(budget, 12)
+        if answer is None:
+            raise Unknown("z3 has no answer within its budget")
+        if answer:
+            raise Failed(question.model)
+        kept = self._core(facts, choices, against)
+        used = tuple(name for name in kept if name)
+        if self.prover.certificates and "" not in kept:
+            sign = self._certificate(relation, plain, {n: facts[n] for n in used})
+            if sign is not None:
+                return Reason("sign", sign=sign, used=used)
+        return Reason("z3", used=used)
+
+    def _core(self, facts: Mapping[str, Any], choices: Sequence[Any], against: Any) -> list[str]:
+        """Return facts, and '' for the alternatives, that contradict the negated claim, none of which can be missed."""
+        kept = [*facts, *([""] if choices else [])]
+        for name in list(kept)[::-1]:
+            rest = [n for n in kept if n != name]
+            question = Question([*(facts[n] for n in rest if n), against], choices if "" in rest else ())
+            if question.possible(self.prover.budget) is False:
+                kept = rest
+        return kept
+
+    def _certificate(self, relation: str, claim: Poly, chosen: Mapping[str, Any]) -> Sign | None:
+        """Return a certificate of sign from the facts that z3 needed, and roots."""
+        facts = {n: Fact(kind, ((p,),)) for n, (kind, p) in chosen.items() if kind != "="}
+        relations = {n: p for n, (kind, p) in chosen.items() if kind == "="}
+        against = contrary(claim, relation)
+        facts |= {NEGATION: against} if against else {}
+        relations |= {} if against else {NEGATION: claim}
+        order = [
+            n for n in reversed(self.ring.names) if any(n in m for p in _polys(facts, relations) for m, _ in p.terms)
+        ]
+        ideal = Ideal(relations, order, 1.0)
+        while len(ideal.rules) < 12 and ideal.grow():
+            pass
+        remainders = Remainders(ideal, facts)
+        for degree in (1, 2, 3, 4):
+            if comb(len(facts) + degree, degree) > PRODUCTS:
+                return None
+            found = contradiction(list(products(facts, (), degree)), remainders)
+            if found:
+                return _sign(claim, relation, found, facts, ideal)
+        return None
+
+
+def _has(value: Any, sign: int) -> bool:
+    """Tell whether a number has a sign for certain."""
+    if isinstance(value, arb):
+        return bool(value > 0 if sign > 0 else value < 0 if sign < 0 else False)
+    return ((value > 0) - (value < 0)) == sign
+
+
+def _sign(
+    claim: Poly, relation: str, found: Sequence[SignProduct], facts: Mapping[str, Fact], ideal: Ideal
+) -> Sign | None:
+    total = constant(0)
+    for product in found:
+        total = total + sign_product(product, facts)[0]
+    terms = ideal.member(total)
+    return None if terms is None else Sign(claim, relation, tuple(found), terms)
+
+
+def _polys(facts: Mapping[str, Fact], relations: Mapping[str, Poly]) -> list[Poly]:
+    return [*(f.matrix[0][0] for f in facts.values()), *relations.values()]
+
+
+def _square_part(number: Fraction) -> tuple[Fraction, Fraction]:
+    """Return q and s with number = q^2 s, s a whole number with few square factors."""
+    whole, q = number.numerator * number.denominator, Fraction(1, number.denominator)
+    for p in (2, 3, 5, 7, 11, 13):
+        while whole % (p * p) == 0:
+            whole, q = whole // (p * p), q * p
+    if whole > 0 and isqrt(whole) ** 2 == whole:
+        return q * isqrt(whole), Fraction(1)
+    return q, Fraction(whole)

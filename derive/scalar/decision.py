@@ -1,0 +1,313 @@
+"""Decide what is claimed of real numbers: small exact instances first, then a proof.
+
+An instance that satisfies every hypothesis and contradicts the claim refutes it. A proof is a tree of reasons for signs
+that proof.py replays; where one of them is z3's, z3 is the authority. What neither finds is supported by the instances
+at which the claim was evaluated, or undecided.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import islice
+from time import monotonic
+from typing import Any
+
+from flint import fmpq
+
+from derive.claim import Answer, Counterexample, Verdict
+from derive.context import Declared, DeclaredInverse
+from derive.errors import InputError
+from derive.interpret.statement import Statement
+from derive.scalar.argue import Failed, Prover, Unknown
+from derive.scalar.evaluate import Undefined, Unsure, holds
+from derive.scalar.example import NumberExample
+from derive.scalar.flint_ring import FlintRing, fraction, rational
+from derive.scalar.instances import Instance, Instances
+from derive.scalar.proof import Leaf, Reason, Step, Tree, Turned, accept, leaves
+from derive.scalar.proof_file import proof_to_json
+from derive.scalar.ratio import Beyond, name_of
+from derive.scalar.real_closed import Budget, Model, Question
+from derive.scalar.system import ROOTS, Split, System, names_in, system
+from derive.terms import Equation, Symbol, walk
+
+__all__ = ["decide_scalar"]
+
+FIRST, MORE = 60, 600  # instances at which a claim is evaluated before and after a proof is tried
+
+
+@dataclass(frozen=True)
+class Failure:
+    """An instance at which a claim is false, or undefined for a reason."""
+
+    instance: Instance
+    number: int  # of the equation
+    left: Any = None
+    right: Any = None
+    undefined: str = ""
+
+    @property
+    def exact(self) -> bool:
+        """Whether all that is shown is rational."""
+        return not self.instance.roots and not self.undefined and None not in (_plain(self.left), _plain(self.right))
+
+
+@dataclass
+class Work:
+    """A statement with the instances of its theory."""
+
+    statement: Statement
+    ring: FlintRing
+    names: Sequence[str]
+    known: System
+    instances: Instances
+    deadline: float
+    shown: list[str] = field(default_factory=list[str])
+
+    @classmethod
+    def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
+        """Read the hypotheses; a sign that is not known leaves them to the cases of the proof."""
+        names = names_in(statement)
+        ring = FlintRing([*names, *ROOTS])
+        known = system(statement, ring, (), without)
+        return cls(statement, ring, names, known, Instances(known, ring, names), deadline, _shown(statement, known))
+
+    def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
+        """Iterate over the instances that contradict the statement."""
+        for instance in instances:
+            if monotonic() > self.deadline:
+                return
+            found = self.failure(instance)
+            if found is not None:
+                yield found
+
+    def failure(self, instance: Instance) -> Failure | None:
+        """Return how an instance contradicts the statement, if it does."""
+        for i, equation in enumerate(self.statement.equations):
+            try:
+                answer, left, right = holds(equation, instance.values)
+            except Undefined as error:
+                return Failure(instance, i, undefined=str(error))
+            except Unsure:
+                continue
+            if answer is False:
+                return Failure(instance, i, left, right)
+        return None
+
+    def simplest(self, failures: Iterable[Failure]) -> Failure | None:
+        """Return the failure that is easiest to follow: both sides exact, small numbers."""
+        return min(failures, default=None, key=self.rank)
+
+    def rank(self, failure: Failure) -> tuple[Any, ...]:
+        """Order failures: a false value before an undefined one, rational before not, small before large."""
+        return bool(failure.undefined), not failure.exact, failure.instance.size(self.shown)
+
+
+def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool = False) -> Answer:
+    """Decide a statement about real numbers.
+
+    Args:
+        statement: equations and inequalities between numbers, or matrices with every dimension 1.
+        seconds: bound on the time; z3 is bounded by its own count, so that the answer does not depend on the machine.
+        explain: look for a counterexample without each hypothesis that a proof uses.
+
+    Raises:
+        InputError: the assumptions contradict each other or the theory.
+    """
+    deadline = monotonic() + seconds
+    try:
+        work = Work.of(statement, deadline)
+    except (Beyond, Split) as error:
+        return Answer(Verdict.undecided, notes=(str(error),))
+    _satisfiable(work)
+    found = work.simplest(work.failures(work.instances.first(FIRST)))
+    if found is not None:
+        return _refuted(work, found)
+    return _proved_or_not(work, explain)
+
+
+def _satisfiable(work: Work) -> None:
+    """Make sure that some numbers satisfy all hypotheses."""
+    if work.known.impossible:
+        raise InputError(f"assume: expected what the theory allows, got a contradiction with {work.known.impossible}")
+    if not work.instances.first(1) and _possible(work, Budget()) is False:
+        raise InputError("assume: expected what the theory allows, got a contradiction; leave one assumption out")
+
+
+def _possible(work: Work, budget: Budget) -> bool | None:
+    facts = [(kind, work.ring.poly(p)) for kind, p in work.known.facts.values()]
+    facts += [("=", work.ring.poly(p)) for p in work.known.relations.values()]
+    choices = [[(kind, work.ring.poly(p)) for kind, p in choice] for choice in work.known.alternatives]
+    return Question(facts, choices).possible(budget)
+
+
+# ---------------------------------------------------------------------------------------------- proofs
+def _proved_or_not(work: Work, explain: bool) -> Answer:
+    prover = Prover(work.statement, work.ring, work.names, work.deadline)
+    try:
+        tree = prover.prove()
+    except Failed as failed:
+        found = _near(work, failed.model) or work.simplest(islice(work.failures(work.instances.first(MORE)), 3))
+        return _refuted(work, found) if found else _open(work, "z3 has numbers at which it fails, none was confirmed")
+    except Unknown as error:
+        return _searched(work, str(error))
+    except Beyond as error:
+        return _searched(work, str(error))
+    if not work.instances.first(1) and _possible(work, prover.budget) is not True:
+        return _open(work, "no numbers were found that satisfy all hypotheses")
+    return _proved(work, prover, tree, explain)
+
+
+def _searched(work: Work, why: str) -> Answer:
+    found = work.simplest(islice(work.failures(work.instances.first(MORE)), 3))
+    return _refuted(work, found) if found else _open(work, why)
+
+
+def _open(work: Work, why: str) -> Answer:
+    """Answer with how often the claim was enclosed, if it could be evaluated."""
+    enclosed = 0
+    for instance in work.instances.first(FIRST):
+        try:
+            answers = [holds(e, instance.values)[0] for e in work.statement.equations]
+        except (Undefined, Unsure, Beyond):
+            continue
+        enclosed += False not in answers
+    if not enclosed:
+        return Answer(Verdict.undecided, notes=(why,))
+    note = f"it holds, as far as enclosures of {200} bits can tell, at {enclosed} instances"
+    return Answer(Verdict.supported, "enclosures", notes=(note, why))
+
+
+def _proved(work: Work, prover: Prover, tree: Tree | Leaf, explain: bool) -> Answer:
+    certified = all(_certified(leaf) for leaf in leaves(tree))
+    if certified:
+        accept(work.statement, tree)
+    used = _used(work, prover, tree)
+    bearing = [o for o in dict.fromkeys((*work.known.origins.values(), *work.statement.assumed)) if o]
+    named = tuple(o for o in bearing if o in used), tuple(o for o in bearing if o not in used)
+    needed = _needed(work, named[0]) if explain else {}
+    data = proof_to_json(tree) if certified else None
+    return Answer(Verdict.proved, "sign argument" if certified else "z3", *named, needed=needed, certificate=data)
+
+
+def _certified(leaf: Leaf) -> bool:
+    reasons = [s.reason if isinstance(s, Turned) else s for s in leaf.steps]
+    return all(r.certified() for r in reasons if isinstance(r, Reason))
+
+
+def _used(work: Work, prover: Prover, tree: Tree | Leaf) -> set[str]:
+    """Return the declarations behind the facts that were consulted and the letters that stand for others."""
+    facts = {name for leaf in leaves(tree) for step in leaf.steps for name in _facts(step)}
+    found = set[str]()
+    for known in prover.systems:
+        letters = [x for s in _letters(work.statement) for x in (s, f"d/dt {s}") if x in known.solved]
+        found |= {known.solved[x] for x in letters}
+        for x in letters:
+            for factor, _ in known.values[x].bottom:
+                known.nonzero(factor)
+        facts |= known.consulted
+        for name, (_, poly) in known.facts.items():
+            letters_of = known.ring.letters(poly)  # type: ignore[attr-defined]
+            if name in facts or (len(poly) == 1 and len(letters_of) == 1 and letters_of <= facts):
+                found.add(known.origins[name])
+        found |= {known.origins[n] for n in known.relations if known.origins.get(n)}
+    return found - {""}
+
+
+def _facts(step: Step) -> Iterator[str]:
+    match step:
+        case Reason(factors=factors, used=used):
+            yield from used
+            yield from (name for f in factors if f.reason is not None for name in _facts(f.reason))
+        case Turned(reason=reason):
+            yield from _facts(reason)
+        case _:
+            return
+
+
+def _letters(statement: Statement) -> set[str]:
+    nodes = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side)]
+    return {name_of(n) for n in nodes if isinstance(n, Symbol)}
+
+
+def _needed(work: Work, names: Sequence[str]) -> dict[str, Counterexample]:
+    """Return a counterexample for hypotheses without which there is one."""
+    found: dict[str, Counterexample] = {}
+    for name in names:
+        try:
+            other = Work.of(work.statement, work.deadline, frozenset({name}))
+        except (Beyond, Split):
+            continue
+        failure = other.simplest(islice(other.failures(other.instances.first(MORE // 3)), 8))
+        if failure is not None:
+            found[name] = example(other, failure)
+    return found
+
+
+# ---------------------------------------------------------------------------------------------- refutations
+def _near(work: Work, model: Model | None) -> Failure | None:
+    """Return an exact instance near the numbers that z3 found, the simplest that contradicts the statement."""
+    if model is None:
+        return None
+    found: list[Failure] = []
+    for largest in (1, 2, 4, 10, 100, 10**4, 10**9):
+        values = {n: model.values.get(n, Fraction(1)).limit_denominator(largest) for n in work.instances.free}
+        instances = work.instances.at({n: rational(v) for n, v in values.items()})
+        found += work.failures(instances)
+        if found:
+            return work.simplest(found)
+    return None
+
+
+def _refuted(work: Work, failure: Failure) -> Answer:
+    method = "undefined" if failure.undefined else "exact instance"
+    return Answer(Verdict.refuted, method, counterexample=example(work, failure), assumed=())
+
+
+def example(work: Work, failure: Failure) -> Counterexample:
+    """Return the counterexample that an instance makes."""
+    symbols = work.statement.theory.theory.symbols
+    point = {n: v for n, v in failure.instance.values.items() if n in work.shown}
+    exact = {n: fraction(v) for n, v in point.items() if isinstance(v, fmpq)}
+    central = {n for n in exact if n in symbols and symbols[n].scalar}
+    sizes = {s: 1 for n in exact if n in symbols for s in (symbols[n].rows, symbols[n].cols) if s}
+    left, right = (_plain(x) for x in (failure.left, failure.right))
+    also = {n: words for n, words in failure.instance.roots.items() if n in work.shown}
+    sides = ("", "")
+    if failure.undefined:
+        sides = failure.undefined, ""
+    elif left is None or right is None or also:
+        sides = _text(failure.left), _text(failure.right)
+    return NumberExample(
+        sizes or {"1": 1}, {n: ((x,),) for n, x in exact.items() if n not in central},
+        () if left is None or any(sides) else ((left,),), () if right is None or any(sides) else ((right,),),
+        work.statement.equations[failure.number].relation, {n: exact[n] for n in exact if n in central},
+        also=also, sides=sides,
+    )  # fmt: skip
+
+
+def _shown(statement: Statement, known: System) -> list[str]:
+    """Return the letters of an instance that a reader needs, without inverses and what the claim does not mention."""
+    theory, used = statement.theory.theory, _letters(statement)
+    hidden = {d.name for d in theory.declared.values() if isinstance(d, DeclaredInverse)}
+    for item in theory.declared.values():
+        match item:
+            case Declared(name=name, statement=Equation(lhs=Symbol() as lhs)):
+                if known.solved.get(name_of(lhs)) == name and name_of(lhs) not in used:
+                    hidden.add(name_of(lhs))
+            case _:
+                pass
+    order = [n for n in theory.symbols if n in theory.symbols]
+    names = [n for n in names_in(statement) if n not in hidden and not n.startswith("d/dt ")]
+    return sorted(names, key=lambda n: order.index(n) if n in order else len(order))
+
+
+def _plain(value: Any) -> Fraction | None:
+    return fraction(value) if isinstance(value, fmpq) else None
+
+
+def _text(value: Any) -> str:
+    """Write a number exactly, or its first digits."""
+    exact = _plain(value)
+    return str(exact) if exact is not None else f"{value.str(12, radius=False)}…"

@@ -1,0 +1,225 @@
+"""Small plants that satisfy every hypothesis exactly: a list without end, the smallest first.
+
+Letters that others stand for follow from the free ones, so that a rational covariance gives a rational plant. What is
+left of the equations is solved for one letter each, by its rational roots, or by the ball of a root of a quadratic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import islice
+from typing import Any
+
+from flint import arb, fmpq, fmpq_poly
+
+from derive.scalar.evaluate import BITS, compare
+from derive.scalar.flint_ring import FlintRing, fraction, rational
+from derive.scalar.system import System
+
+__all__ = ["Instance", "Instances"]
+
+SIZES = (0, 1, 2, Fraction(1, 2), 3, 4, Fraction(1, 3), Fraction(3, 2), 5)  # absolute values, simplest first
+TRIED = 6_000  # points for the free letters, at most
+RELATION = {"nonnegative": "≥", "positive": ">", "nonzero": "≠"}
+
+
+@dataclass(frozen=True)
+class Instance:
+    """Values of all letters; ``roots`` says in words what those are that are balls."""
+
+    values: Mapping[str, Any]
+    roots: Mapping[str, str] = field(default_factory=dict[str, str])
+
+    def size(self, names: Sequence[str]) -> tuple[Any, ...]:
+        """Return a measure of how simple the values of some letters are."""
+        values = [fraction(v) for n in names if isinstance(v := self.values.get(n), fmpq)]
+        heights = [max(abs(v.numerator), v.denominator) for v in values]
+        return (
+            len(names) - len(values), max(heights, default=0), sum(heights),
+            sum(v < 0 for v in values), sum(v == 0 for v in values),
+        )  # fmt: skip
+
+
+class Instances:
+    """The instances of a system, found as they are asked for."""
+
+    def __init__(self, system: System, ring: FlintRing, names: Sequence[str]):
+        self.system, self.ring, self.roots = system, ring, list(system.roots)
+        roots = {name for _, name in self.roots}
+        self.dependent = self._dependent(roots)
+        solved = {*system.values, *self.dependent, *roots}
+        self.free = [n for n in names if n not in solved and not n.startswith("√")]
+        self.found: list[Instance] = []
+        self.source = iter(()) if system.impossible else self._search()
+
+    def _dependent(self, roots: set[str]) -> dict[str, Any]:
+        """Return a letter for each equation that remains, with that equation."""
+        found: dict[str, Any] = {}
+        for name, poly in self.system.relations.items():
+            if name in roots:
+                continue
+            degrees = dict(zip(self.ring.names, map(int, poly.degrees()), strict=True))
+            usable = [n for n, d in degrees.items() if d and n not in found and n not in roots]
+            if usable:
+                found[min(usable, key=lambda n: (-(degrees[n] == 2), degrees[n], n))] = poly
+        return found
+
+    def __iter__(self) -> Iterator[Instance]:
+        """Iterate over the instances, the simplest first."""
+        i = 0
+        while True:
+            while len(self.found) <= i:
+                new = next(self.source, None)
+                if new is None:
+                    return
+                self.found.append(new)
+            yield self.found[i]
+            i += 1
+
+    def first(self, count: int) -> list[Instance]:
+        """Return some instances."""
+        return list(islice(self, count))
+
+    def at(self, point: Mapping[str, Any]) -> list[Instance]:
+        """Return the instances in which the free letters have these values."""
+        return [i for i in self._complete(dict(point), {}, list(self.dependent)) if self._allowed(i.values)]
+
+    def value(self, poly: Any, instance: Instance) -> Any:
+        """Return the value of a polynomial in letters and roots of the system."""
+        point = dict(instance.values)
+        for s, name in self.system.roots:
+            if name not in point:
+                point[name] = _ball_root(self._at(s, point))
+        return self._at(poly, point)
+
+    # ------------------------------------------------------------------------------------- search
+    def _search(self) -> Iterator[Instance]:
+        pools = [self._pool(name) for name in self.free]
+        for choice in islice(_by_weight([len(p) for p in pools]), TRIED):
+            point = {name: pool[i] for name, pool, i in zip(self.free, pools, choice, strict=True)}
+            yield from self.at(point)
+
+    def _pool(self, name: str) -> list[Any]:
+        sign, strict = self.system.signs.get(name, (0, False))
+        sizes = [x for x in SIZES if x or not strict]
+        signed = [x * s for x in sizes for s in ((sign,) if sign else (1, -1)) if x or s >= 0]
+        return [rational(Fraction(x)) for x in signed]
+
+    def _complete(self, point: dict[str, Any], said: dict[str, str], open_: list[str]) -> Iterator[Instance]:
+        if open_:
+            name = open_[0]
+            for value, words in self._solutions(name, point):
+                now = {**said, name: words} if words else said
+                yield from self._complete({**point, name: value}, now, open_[1:])
+            return
+        for s, name in self.roots:
+            value = self._at(s, point)
+            root = _rational_root(value) if isinstance(value, fmpq) else None
+            if root is None:
+                return
+            point[name] = root
+        for name, ratio in self.system.values.items():
+            bottom: Any = fmpq(1)
+            for factor, exponent in ratio.bottom:
+                bottom = bottom * self._at(factor, point) ** exponent
+            if (bottom == 0) if isinstance(bottom, fmpq) else bottom.contains(0):
+                return
+            point[name] = self._at(ratio.top, point) / bottom
+        yield Instance(point, said)
+
+    def _at(self, poly: Any, point: Mapping[str, Any]) -> Any:
+        if any(isinstance(v, arb) for v in point.values()):
+            total: Any = fmpq(0)
+            for names, c in self.ring.terms(poly):
+                product: Any = rational(c)
+                for name in names:
+                    product = product * point[name]
+                total = product + total if isinstance(product, arb) else total + product
+            return total
+        return self.ring.at(poly, point)
+
+    def _solutions(self, name: str, point: Mapping[str, Any]) -> Iterator[tuple[Any, str]]:
+        """Iterate over the real roots of an equation in one letter: rational ones, and those of a quadratic."""
+        if any(isinstance(v, arb) for v in point.values()):
+            return
+        coefficients: dict[int, Any] = {}
+        for names, c in self.ring.terms(self.dependent[name]):
+            product = rational(c)
+            for other in names:
+                if other != name:
+                    if other not in point:
+                        return
+                    product = product * point[other]
+            power = names.count(name)
+            coefficients[power] = coefficients.get(power, fmpq(0)) + product
+        poly = fmpq_poly([coefficients.get(k, fmpq(0)) for k in range(max(coefficients) + 1)])
+        if poly.degree() < 1:
+            if poly.degree() < 0:
+                yield from ((v, "") for v in self._pool(name)[:5])
+            return
+        _, factors = poly.factor()
+        for factor, _ in factors:
+            if factor.degree() == 1:
+                yield -factor[0] / factor[1], ""
+            elif factor.degree() == 2:
+                yield from _quadratic(factor)
+
+    def _allowed(self, point: Mapping[str, Any]) -> bool:
+        """Tell whether all facts hold for certain."""
+        for kind, poly in self.system.facts.values():
+            if compare(self._at(poly, point), RELATION[kind], fmpq(0)) is not True:
+                return False
+        for choice in self.system.alternatives:
+            if not any(compare(self._at(p, point), RELATION[kind], fmpq(0)) for kind, p in choice):
+                return False
+        return True
+
+
+def _quadratic(poly: Any) -> Iterator[tuple[Any, str]]:
+    """Iterate over the real roots of an irreducible quadratic as balls, with their expressions."""
+    from flint import ctx
+
+    c, b, a = poly[0], poly[1], poly[2]
+    inside = b * b - 4 * a * c
+    if inside <= 0:
+        return
+    before, ctx.prec = ctx.prec, BITS
+    try:
+        root, middle = arb(inside / (4 * a * a)).sqrt(), arb(-b / (2 * a))
+        for sign, mark in ((1, "+"), (-1, "-")):
+            yield middle + sign * root, f"{-b / (2 * a)} {mark} sqrt({inside / (4 * a * a)})"
+    finally:
+        ctx.prec = before
+
+
+def _rational_root(value: Any) -> Any:
+    if value < 0:
+        return None
+    p, q = value.p.isqrt(), value.q.isqrt()
+    return fmpq(p, q) if p * p == value.p and q * q == value.q else None
+
+
+def _ball_root(value: Any) -> Any:
+    """Return a root, enclosed where it is not rational; a radicand that may be negative gives all numbers."""
+    if isinstance(value, fmpq):
+        exact = _rational_root(value)
+        return exact if exact is not None else arb(value).sqrt()
+    return value.sqrt()
+
+
+def _by_weight(lengths: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Iterate over choices of one index each, those with a small sum first."""
+    for weight in range(sum(lengths) - len(lengths) + 1):
+        yield from _with_sum(lengths, weight)
+
+
+def _with_sum(lengths: Sequence[int], weight: int) -> Iterator[tuple[int, ...]]:
+    if not lengths:
+        if weight == 0:
+            yield ()
+        return
+    for i in range(min(lengths[0] - 1, weight) + 1):
+        for rest in _with_sum(lengths[1:], weight - i):
+            yield (i, *rest)
