@@ -39,8 +39,9 @@ class Name(Node):
     """A letter with its marks: P, \\hat x_{k|k-1}, \\sigma_v^2's sigma, \\mathbf A, L_f, P^+.
 
     ``letter`` is the character or the command's name without backslash (``"P"``, ``"Phi"``); styles are dropped.
-    ``accents`` from the inside out (``("hat", "dot")``); ``sub`` and ``sup`` are the indices as normalised text
-    without braces, styles and spaces (``"k-1"``, ``"k|k-1"``, ``"vv"``, ``"+"``).
+    ``accents`` from the inside out (``("hat", "dot")``); ``sub`` and ``sup`` are the indices as text without braces,
+    styles and spaces, Greek letters and accents as characters (``"k-1"``, ``"k|k-1"``, ``"vv"``, ``"ξξ"``, ``"z-ȳ"``,
+    ``"∞"``, ``"+"``).
     """
 
     letter: str
@@ -59,6 +60,13 @@ class Digits(Node):
 @dataclass(frozen=True)
 class Infinite(Node):
     """The sign of infinity."""
+
+
+@dataclass(frozen=True)
+class Blank(Node):
+    """What is left open: dots (mark "…"), the argument of a function (·), a symmetric block (*), or nothing at all."""
+
+    mark: str = ""
 
 
 # ------------------------------------------------------------------------------------------------ arithmetic
@@ -117,10 +125,14 @@ class Inverted(Node):
 
 @dataclass(frozen=True)
 class Fenced(Node):
-    """A group in brackets; ``fence`` is its opening bracket: ( [ { or | or ‖."""
+    """A group in brackets; ``fence`` is its opening bracket: ( [ { or | or ‖, of an interval both: [) (] .
+
+    ``sub`` is the index of a norm, as text.
+    """
 
     body: Node
     fence: str = "("
+    sub: str = ""
 
 
 @dataclass(frozen=True)
@@ -205,6 +217,14 @@ class Cases(Node):
 
 
 @dataclass(frozen=True)
+class Given(Node):
+    """Something under a condition: E[x | y], P(k | k-1)."""
+
+    body: Node
+    condition: Node
+
+
+@dataclass(frozen=True)
 class Listed(Node):
     """Several things with commas between them."""
 
@@ -214,7 +234,10 @@ class Listed(Node):
 # ------------------------------------------------------------------------------------------------ statements
 @dataclass(frozen=True)
 class Related(Node):
-    """A chain a = b <= c; ``relations`` are = := < > ≤ ≥ ≺ ≻ ⪯ ⪰ ≠ → ∈ ∼ ⇒ ⇔, one less than the sides."""
+    """A chain a = b <= c; ``relations`` are = := < > ≤ ≥ ≺ ≻ ⪯ ⪰ ≠ → ∈ ∼ ≈ ⇒ ⇔, one less than the sides.
+
+    The arrows ⇒ ⇔ stand between statements and hold together less tightly than the others.
+    """
 
     sides: tuple[Node, ...]
     relations: tuple[str, ...]
@@ -222,7 +245,11 @@ class Related(Node):
 
 @dataclass(frozen=True)
 class Display(Node):
-    """One displayed formula: its statements in order, the words between them, and its label and number."""
+    """One displayed formula: its statements in order, the words around them, and its label and number.
+
+    ``words[i]`` stands before statement i, the last one after them all; punctuation is left out. A statement that
+    continues the display before it, as in "= C P C'", has a Blank as its first side.
+    """
 
     statements: tuple[Node, ...]
     words: tuple[str, ...] = ()

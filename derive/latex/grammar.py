@@ -1,0 +1,314 @@
+r"""The reader of formulas: LaTeX, as the field writes it, to a tree that says what is on the page and no more.
+
+``read(r"P_k = A P_{k-1} A^\top + Q")`` is a recursive descent without backtracking: bounded in the length of the
+source, in depth and in the work of macros, and linear in the tokens. Nothing is evaluated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from derive.latex.macros import Macro, expand
+from derive.latex.names import Exponent
+from derive.latex.operands import ONE
+from derive.latex.operators import DIFFERENTIALS, Operators
+from derive.latex.rows import frame
+from derive.latex.syntax import (
+    Applied,
+    Blank,
+    Differentiated,
+    Digits,
+    Display,
+    Fenced,
+    Listed,
+    Matrix,
+    Name,
+    Node,
+    Over,
+    Plus,
+    Related,
+    Summed,
+    Times,
+    walk,
+)
+from derive.latex.tokens import Token, Unreadable, sized, tokenise
+from derive.latex.vocabulary import SIGNS_OF_MULTIPLICATION
+
+NO_OPERANDS = frozenset(("forall", "pm", "mp", "cdot", "times", "ast", "qed", "hline", "star"))
+SIGNS = {"+": "+", "-": "-", "pm": "±", "mp": "∓"}
+
+
+def read(source: str, *, macros: Mapping[str, Macro] | None = None, functions: Collection[str] = ()) -> Display:
+    r"""Read one displayed formula.
+
+    Args:
+        source: LaTeX or pasted Unicode, with or without its ``$$``, ``\[`` and environments.
+        macros: number of arguments and body of the user's macros, by name without backslash.
+        functions: letters that are functions whatever their arguments look like, as the trees name them.
+
+    Raises:
+        Unreadable: not a formula, or one with two readings; says where, what was expected and what was got.
+    """
+    tokens, label, tag = frame(list(sized(expand(tokenise(source), macros or {}))))
+    return Reader(tokens, functions).display(label, tag)
+
+
+class Reader(Operators):
+    """Reads statements, chains, sums and products."""
+
+    # -------------------------------------------------------------------------------------------- statements
+    def display(self, label: str, tag: str) -> Display:
+        """Read all statements of a display."""
+        statements, words, commas = list[Node](), list[str](), list[bool]()
+        while True:
+            between, plain, number = self._separators()
+            words.append(between)
+            commas.append(plain)
+            tag = tag or number
+            if self.look().kind == "end":
+                break
+            statements.append(self._statement())
+        if not statements:
+            self.fail("a formula")
+        merged, kept = _merged(statements, words, commas)
+        return Display(merged, kept, label, tag)
+
+    def _separators(self) -> tuple[str, bool, str]:
+        """Go past what stands between statements: its words, whether it is a single comma, and a number (12)."""
+        words, start = list[str](), self.at
+        while True:
+            token = self.look()
+            if token.kind == "word":
+                words.append(token.text)
+            elif token.kind == "command" and token.text == "forall":
+                words.append("for all")
+            elif token.kind not in ("break", "wide", "column") and token.text not in (",", ".", ";"):
+                break
+            self.at += 1
+        plain = self.at == start + 1 and self.tokens[start].text == ","
+        number = self._number() if self.at > start else ""
+        return " ".join(w for w in words if w), plain, number
+
+    def _number(self) -> str:
+        """Go past the number of an equation at the end of the display."""
+        one, number, three, end = (self.look(i) for i in range(4))
+        if (one.text, three.text, end.kind) == ("(", ")", "end") and number.kind == "number":
+            self.at += 3
+            return number.text
+        return ""
+
+    def _statement(self) -> Node:
+        node = self.relation()
+        token = self.look()
+        if token.kind not in ("end", "break", "wide", "column", "word") and token.text not in (",", ".", ";", "forall"):
+            self.fail("an operator, a relation or the end of the formula")
+        for part in walk(node):
+            if part == Name("partial"):
+                raise Unreadable(part.span[0], "a derivative such as \\frac{\\partial f}{\\partial x}", "\\partial")
+        return node
+
+    def relation(self) -> Node:
+        """Read a chain of relations; one that starts with a relation continues what stood before."""
+        start = self.look()
+        sides: list[Node] = [Blank(span=(start.start, start.start)) if self._related() else self.expression()]
+        relations: list[str] = []
+        while self._related():
+            relations.append(self._relation())
+            sides.append(self.expression())
+        return Related(tuple(sides), tuple(relations), span=self.span(start)) if relations else sides[0]
+
+    def _related(self) -> bool:
+        token = self.look()
+        return token.kind == "relation" or (token.kind == "command" and token.text in ("overset", "stackrel", "not"))
+
+    def _relation(self) -> str:
+        r"""Go past a relation; with something set above it, it is a definition: \overset{\text{def}}{=}."""
+        token = self.take()
+        if token.kind == "relation":
+            return token.text
+        if token.text == "not":
+            if not self.took("=", "relation"):
+                self.fail("= after \\not")
+            return "≠"
+        self.index()
+        braced = self.took("{")
+        relation = self.take()
+        if relation.kind != "relation" or (braced and not self.took("}")):
+            self.fail("a relation", relation)
+        return ":=" if relation.text == "=" else relation.text
+
+    # -------------------------------------------------------------------------------------------- sums
+    def expression(self) -> Node:
+        """Read a sum."""
+        start = self.look()
+        addends: list[tuple[str, Node]] = [(self._sign() or "+", self.product())]
+        signed = start.text in SIGNS and start.kind in ("sign", "command")
+        while not (self.integral and self.integral[0] is not None):
+            sign = self._sign()
+            if not sign:
+                break
+            self._refuse_spilled_index(addends[-1][1])
+            addends.append((sign, self.product()))
+        if len(addends) == 1 and not signed:
+            return addends[0][1]
+        return Plus(tuple(_spliced(addends)), span=self.span(start))
+
+    def _sign(self) -> str:
+        token = self.look()
+        if token.text in SIGNS and token.kind in ("sign", "command"):
+            self.at += 1
+            return SIGNS[token.text]
+        return ""
+
+    def _refuse_spilled_index(self, addend: Node) -> None:
+        """Refuse sum_i a_i + b_i, where the second may or may not be summed."""
+        last = addend.factors[-1] if isinstance(addend, Times) else addend
+        if not isinstance(last, Summed) or not isinstance(last.index, Name):
+            return
+        following = self.tokens[self.at : self.at + 3]
+        if [t.text for t in following[1:]] == ["_", last.index.letter]:
+            self.ambiguous(last, "\\sum (a_i + b_i)", "(\\sum a_i) + b_i", "\\sum a_i + b_i")
+
+    # -------------------------------------------------------------------------------------------- products
+    def product(self) -> Node:
+        """Read a product: factors side by side or with a sign, and divisions with a stroke."""
+        start, factors, signed = self.look(), list[Node](), False
+        while True:
+            token = self.look()
+            if self.numerator and self.ends_integrand():
+                self.integral[0] = self.differential()
+                signed = False
+            elif factors and not signed and token.text in SIGNS_OF_MULTIPLICATION and token.kind in ("sign", "command"):
+                self.at += 1
+                signed = True
+            elif factors and not signed and token.text == "/" and token.kind == "sign":
+                self.at += 1
+                factors = self._divided(factors, start)
+            elif signed or (self.starts_operand(token) and not self.ends_integrand()):
+                if factors and not signed and token.kind == "number":
+                    self._refuse_number(token)
+                factors.extend(self._factors())
+                signed = False
+            else:
+                break
+        if not factors:
+            if self.numerator and self.integral[0] is not None:
+                return ONE
+            self.fail("a formula")
+        flat = _flat(factors)
+        return flat[0] if len(flat) == 1 else Times(flat, span=self.span(start))
+
+    def starts_operand(self, token: Token) -> bool:
+        """Return whether an operand can start with a token."""
+        if token.kind == "delimiter":
+            bar = token.text in ("|", "‖") and (token.side == "left" or (not token.side and self.bar != token.text))
+            return bar or token.text in ("(", "[", "\\{")
+        if token.kind == "command":
+            return token.text not in NO_OPERANDS
+        return token.kind in ("letter", "number", "begin") or (token.text == "{" and token.kind == "sign")
+
+    def _refuse_number(self, token: Token) -> None:
+        self.ambiguous(token, f"\\cdot {token.text}", f"an index _{{{token.text}}}", f"{token.text} behind a factor")
+
+    def _divided(self, factors: list[Node], start: Token) -> list[Node]:
+        """Read what stands behind a stroke; a factor behind it has two readings."""
+        at = next((i for i, f in enumerate(factors) if f in DIFFERENTIALS), None)
+        if at is not None and self.below_is_d(self.at):
+            return [*factors[:at], self._derivative_by_stroke(factors[at:], start)]
+        top, bottom = _flat(factors), self.factor()
+        token = self.look()
+        if token.text == "/" and token.kind == "sign":
+            self.ambiguous(token, "a/(b c)", "a c/b", "a/b/c")
+        closed = isinstance(bottom, Fenced | Matrix) and not (
+            token.kind == "delimiter" and token.text in ("(", "[", "\\{")
+        )
+        if self.starts_operand(token) and not self.ends_integrand() and not closed:
+            self.ambiguous(token, "a/(b c)", "(a/b) c", "a/b c")
+        return [Over(top[0] if len(top) == 1 else Times(top), bottom, span=self.span(start))]
+
+    def _derivative_by_stroke(self, above: list[Node], start: Token) -> Node:
+        """Read dX/dt and d/dt X."""
+        sign, token = above[0], self.look()
+        below = (self.atom(), self.factor())
+        body = (
+            above[1] if len(above) == 2 else Times(tuple(above[1:])) if len(above) > 2 else self.differentiated(token)
+        )
+        return Differentiated(body, below[1], 1, sign == Name("partial"), span=self.span(start))
+
+    # -------------------------------------------------------------------------------------------- factors
+    def factor(self) -> Node:
+        """Read an operand with its scripts and arguments, where a product has two readings."""
+        start = self.look()
+        factors = self._factors()
+        if len(factors) > 1:
+            self.ambiguous(start, "with the group behind the letter", "without it", "a letter and a group behind it")
+        return factors[0]
+
+    def _factors(self) -> list[Node]:
+        """Read an operand with its scripts; a letter and a group behind it may be one factor or two."""
+        start = self.look()
+        node = self.atom()
+        sub, sup, exponents = self.marks()
+        node = self.indexed(node, sub, sup, start)
+        token = self.look()
+        if not isinstance(node, Name) or token.kind != "delimiter" or not self.starts_operand(token):
+            return [self._raised(node, exponents, start)]
+        if node.letter == "E" and not exponents and token.text in ("[", "\\{") and not node.sub:
+            return [self.scripted(self.expectation(start), start)]
+        if token.text not in ("(", "["):
+            return [self._raised(node, exponents, start)]
+        group = self.fenced()
+        if isinstance(group, Fenced) and group.fence in "([" and self.applies(node, group):
+            arguments = group.body.items if isinstance(group.body, Listed) else (group.body,)
+            applied = Applied(node, arguments, span=self.span(start))
+            return [self._raised(applied, exponents, start) if exponents else self.scripted(applied, start)]
+        return [self._raised(node, exponents, start), self.scripted(group, token)]
+
+    def scripted(self, node: Node, start: Token) -> Node:
+        """Read the scripts behind a node."""
+        sub, sup, exponents = self.marks()
+        return self._raised(self.indexed(node, sub, sup, start), exponents, start)
+
+    def _raised(self, node: Node, exponents: list[Exponent], start: Token) -> Node:
+        for exponent in exponents:
+            node = exponent(node, self.span(start))
+        return node
+
+
+def _flat(factors: list[Node]) -> tuple[Node, ...]:
+    """Dissolve products that only braces hold together."""
+    return tuple(f for factor in factors for f in (factor.factors if isinstance(factor, Times) else (factor,)))
+
+
+def _spliced(addends: list[tuple[str, Node]]) -> list[tuple[str, Node]]:
+    """Dissolve sums that only braces hold together."""
+    out: list[tuple[str, Node]] = []
+    for sign, node in addends:
+        out.extend(node.addends if sign == "+" and isinstance(node, Plus) else [(sign, node)])
+    return out
+
+
+def _merged(statements: list[Node], words: list[str], commas: list[bool]) -> tuple[tuple[Node, ...], tuple[str, ...]]:
+    """Read W, V > 0 as one statement about a list, and k = 0, 1, 2 likewise; ``words[i]`` stand before statement i."""
+    out, kept, waiting = list[Node](), [words[0]], list[Node]()
+    for i, node in enumerate(statements):
+        last = out[-1] if out else None
+        if isinstance(last, Related) and commas[i] and isinstance(node, Digits | Blank):
+            side = last.sides[-1]
+            items = side.items if isinstance(side, Listed) else (side,)
+            out[-1] = replace(last, sides=(*last.sides[:-1], Listed((*items, node), span=side.span)))
+            kept[-1] = words[i + 1]
+            continue
+        if not isinstance(node, Related) and commas[i + 1]:
+            waiting.append(node)
+        elif waiting and isinstance(node, Related) and commas[i]:
+            listed = Listed((*waiting, node.sides[0]), span=waiting[0].span)
+            node, waiting = replace(node, sides=(listed, *node.sides[1:])), []
+            del out[len(out) - len(listed.items) + 1 :]
+            del kept[len(kept) - len(listed.items) + 1 :]
+        else:
+            waiting = []
+        out.append(node)
+        kept.append(words[i + 1])
+    return tuple(out), tuple(kept)
