@@ -220,9 +220,8 @@ class Reader(Operators):
         token = self.look()
         if token.text == "/" and token.kind == "sign":
             self.ambiguous(token, "a/(b c)", "a c/b", "a/b/c")
-        closed = isinstance(bottom, Fenced | Matrix) and not (
-            token.kind == "delimiter" and token.text in ("(", "[", "\\{")
-        )
+        grouped = token.kind == "delimiter" and token.text in ("(", "[", "\\{")
+        closed = isinstance(bottom, Fenced | Matrix) and not grouped
         if self.starts_operand(token) and not self.ends_integrand() and not closed:
             self.ambiguous(token, "a/(b c)", "(a/b) c", "a/b c")
         return [Over(top[0] if len(top) == 1 else Times(top), bottom, span=self.span(start))]
@@ -231,9 +230,8 @@ class Reader(Operators):
         """Read dX/dt and d/dt X."""
         sign, token = above[0], self.look()
         below = (self.atom(), self.factor())
-        body = (
-            above[1] if len(above) == 2 else Times(tuple(above[1:])) if len(above) > 2 else self.differentiated(token)
-        )
+        rest = _flat(above[1:])
+        body = rest[0] if len(rest) == 1 else Times(rest) if rest else self.differentiated(token)
         return Differentiated(body, below[1], 1, sign == Name("partial"), span=self.span(start))
 
     # -------------------------------------------------------------------------------------------- factors

@@ -28,7 +28,7 @@ from derive.latex.syntax import (
     Times,
     Transposed,
 )
-from derive.latex.tokens import Token
+from derive.latex.tokens import Token, Unreadable
 from derive.latex.vocabulary import (
     ACCENT_COMMANDS,
     BLACKBOARD,
@@ -105,11 +105,8 @@ class Operands(Names):
 
     def _item(self) -> Node:
         token = self.look()
-        if (
-            token.kind == "command"
-            and token.text in ("cdot", "bullet")
-            and self.look(1).text in (")", "]", "\\}", ",", "|")
-        ):
+        alone = self.look(1).text in (")", "]", "\\}", ",", "|")
+        if alone and token.kind == "command" and token.text in ("cdot", "bullet"):
             self.at += 1
             return Blank("·", span=(token.start, token.end))
         return self.expression()
@@ -316,9 +313,10 @@ class Operands(Names):
         with self.inside(begin):
             rows = self._rows(begin)
             self.at += 1
-        for row in rows[1:]:
+        for row in rows:
             if len(row) != len(rows[0]):
-                self.fail(f"{len(rows[0])} cells in each row, as in the first", replace(begin, text=f"{len(row)} in another", kind=""))  # fmt: skip
+                expected = f"{len(rows[0])} cells in each row, as in the first"
+                raise Unreadable(row[0].span[0], expected, f"a row with {len(row)}")
         return Matrix(tuple(map(tuple, rows)), MATRICES[begin.text], span=self.span(begin))
 
     def _rows(self, begin: Token) -> list[list[Node]]:

@@ -46,10 +46,9 @@ class Operators(Operands):
         sub, power = self._below(), None
         if self.look().text == "^" and self.look().kind == "sign":
             power = self._power(function, start)
-        if function in OPEN_FUNCTIONS and (sub is not None or function == "lim"):
-            if not self._listed_next():
-                with self.deeper(start):
-                    return Called(function, (self.product(),), sub, span=self.span(start))
+        if function in OPEN_FUNCTIONS and (sub is not None or function == "lim") and not self._listed_next():
+            with self.deeper(start):
+                return Called(function, (self.product(),), sub, span=self.span(start))
         token = self.look()
         if token.kind == "delimiter" and token.text in ("(", "[", "\\{") and self.starts_operand(token):
             node = self._bracketed(function, sub, start)
@@ -227,9 +226,10 @@ class Operators(Operands):
                 variable = self.differential()
                 body = self.product() if self.starts_operand(self.look()) and not self.at_differential() else ONE
             else:
-                self.integral, self.numerator = [None], False
+                holder: list[Node | None] = [None]
+                self.integral, self.numerator = holder, False
                 body = self.expression()
-                found = self.integral[0]
+                found = holder[0]
                 if found is None and not self.at_differential():
                     self.fail("an operator or the differential of this integral, such as d\\tau")
                 variable = self.differential() if found is None else found
@@ -276,6 +276,7 @@ class Operators(Operands):
         return False
 
     def below_is_d(self, at: int) -> bool:
+        """Return whether dt or partial x stands at a place, with or without braces."""
         inside = at + 1 if self.tokens[min(at, len(self.tokens) - 1)].text == "{" else at
         behind = self._behind_d(inside)
         if behind is None:

@@ -164,7 +164,7 @@ class Expected(Node):
 
 @dataclass(frozen=True)
 class Differentiated(Node):
-    """A derivative d/dt or partial derivative with respect to a node, or of n-th order; a dot is an accent of a Name."""
+    """A derivative d/dt or partial derivative of n-th order with respect to a node; a dot is an accent of a Name."""
 
     body: Node
     variable: Node

@@ -71,8 +71,8 @@ SPELLED_ACCENT = {"ring": "mathring"}
 
 # functions by what they are called on the page, and the one name that the tree has
 FUNCTIONS = {
-    **{f: f for f in _words("det tr max min ln log exp sin cos tan cot sinh cosh tanh arctan arcsin arccos diag rank lim "
-                            "inf sup arg argmin argmax cov var vec sgn limsup liminf blkdiag spec null span dim")},
+    **{f: f for f in _words("det tr max min ln log exp sin cos tan cot sinh cosh tanh arctan arcsin arccos diag rank "
+                            "lim inf sup arg argmin argmax cov var vec sgn limsup liminf blkdiag spec null span dim")},
     "Re": "Re", "Im": "Im", "real": "Re", "imag": "Im", "trace": "tr", "Tr": "tr", "Trace": "tr", "spur": "tr",
     "Cov": "cov", "Var": "var", "sign": "sgn", "atan": "arctan", "rk": "rank", "ker": "null", "Det": "det",
     "diagonal": "diag", "col": "col",
