@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from derive.claim import Answer, Verdict
@@ -12,13 +13,14 @@ if TYPE_CHECKING:
 __all__ = ["decide"]
 
 
-def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False) -> Answer:
+def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False, near: bool = True) -> Answer:
     """Decide a statement.
 
     Args:
         statement: a claim, read in its theory.
         seconds: bound on the time.
         explain: look for a counterexample without each hypothesis that a proof uses.
+        near: look for the convention in which a refuted claim holds, and for the nearest true formula.
 
     Returns:
         proved with a certificate that was replayed, its hypotheses satisfiable; refuted with an exact counterexample;
@@ -36,5 +38,16 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
     if is_matrix_claim(statement):
         from derive.decide.matrix import decide_matrix
 
-        return decide_matrix(statement, seconds, explain)
+        answer = decide_matrix(statement, seconds, explain)
+        return _with_neighbours(answer, statement) if answer.verdict is Verdict.refuted and near else answer
     return Answer(Verdict.undecided, assumed=statement.assumed, notes=("there is no rule for claims of this kind",))
+
+
+def _with_neighbours(answer: Answer, statement: Statement) -> Answer:
+    """Add the convention in which a refuted claim holds, and the nearest true formula with its explanation."""
+    from derive.decide.convention import conventions
+    from derive.decide.nearest import nearest
+
+    found = nearest(statement)
+    notes = (*answer.notes, *conventions(statement), *([found[1]] if found and found[1] else []))
+    return replace(answer, notes=notes, nearest=found[0] if found else None)

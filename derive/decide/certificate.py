@@ -21,9 +21,9 @@ from derive.decide.workspace import proof_reading
 from derive.derivation import Proof
 from derive.errors import InputError
 from derive.interpret.statement import Statement
-from derive.kernel import Poly, parts as letter_parts
-from derive.kernel import Rejected
+from derive.kernel import Poly, Rejected
 from derive.kernel import Term as Addend
+from derive.kernel import parts as letter_parts
 from derive.rules import Grid
 from derive.serialise import SCHEMAS, Reader, certificates, letters, to_json
 from derive.terms import Equation, Reading, Symbol, walk
@@ -42,7 +42,7 @@ def replayed(statement: Statement, items: Sequence[Item], proof: Sequence[Part])
     Raises:
         Rejected: something in it does not hold.
     """
-    reading = accept(items, proof_reading(statement.theory))
+    reading = accept(items, proof_reading(statement.theory), statement.theory.theory)
     if len(proof) != len(statement.equations):
         raise Rejected("every equation of the claim needs its proof")
     for part, equation in zip(proof, statement.equations, strict=True):

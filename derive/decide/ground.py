@@ -11,6 +11,7 @@ from fractions import Fraction
 
 from derive.context import Theory
 from derive.kernel import Alphabet, Certificate, Letter, Poly, Rejected, Term, identity, parts, replay
+from derive.real import UNIT
 from derive.rules import (
     Comparison,
     Context,
@@ -57,10 +58,16 @@ class Introduced:
 Item = Lemma | Introduced
 
 
-def accept(items: Iterable[Item], reading: Reading) -> Reading:
-    """Take up lemmas and inverses in order, each replayed first; or raise Rejected."""
+def accept(items: Iterable[Item], reading: Reading, theory: Theory) -> Reading:
+    """Take up lemmas and inverses in order, each replayed first; or raise Rejected.
+
+    Declarations of the theory that waited for one of these inverses are taken up as well.
+    """
     for item in items:
+        if (item.name if isinstance(item, Lemma) else item.letter) in theory.declared:
+            raise Rejected("a declaration of the theory has this name")
         reading = _with_lemma(item, reading) if isinstance(item, Lemma) else _with_inverse(item, reading)
+        reading = theory.settle(reading)
     return reading
 
 
@@ -155,7 +162,9 @@ def generic(of: Poly, variable: str, context: Context, inverses: Mapping[Poly, s
     top = {key: c for key, c in of.terms.items() if degrees[key] == max(degrees.values())}
     if any(parts(a)[0] in proper for _, w in top for a in w):
         return False
-    lead = Poly({(tuple(s for s in m if s != variable), w): c for (m, w), c in top.items()}, of.rows, of.cols)
+    if len({m.count(UNIT) for m, _ in top}) != 1:
+        return False
+    lead = Poly({(_without(m, variable), w): c for (m, w), c in top.items()}, of.rows, of.cols)
     known = {fact.matrix for fact in context.facts.values() if fact.kind in ("pd", "invertible")}
     return set(lead.terms) == {((), ())} or ((lead,),) in known or ((-lead,),) in known
 
@@ -189,7 +198,11 @@ def _is_pencil(poly: Poly, variable: str, proper: set[str]) -> bool:
     """Tell whether a polynomial is c s I + X, with X free of s."""
     lead = {key for key in poly.terms if variable in key[0]}
     rest = {parts(a)[0] for _, w in poly.terms for a in w}
-    return lead == {((variable,), ())} and not rest & proper
+    return {(_without(m, variable), w, len(m) - m.count(UNIT)) for m, w in lead} == {((), (), 1)} and not rest & proper
+
+
+def _without(scalars: tuple[str, ...], variable: str) -> tuple[str, ...]:
+    return tuple(s for s in scalars if s not in (variable, UNIT))
 
 
 def _degree(key: tuple[tuple[str, ...], tuple[str, ...]], variable: str, proper: set[str]) -> int:

@@ -31,8 +31,8 @@ from derive.terms import (
 __all__ = ["is_matrix_claim"]
 
 MATRIX: tuple[type[Term], ...] = (
-    Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace, Gradient,
-    Block, Image,
+    Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace,
+    Gradient, Block, Image,
 )  # fmt: skip
 
 

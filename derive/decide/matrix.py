@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 
 from derive.claim import Answer, Counterexample, Verdict
-from derive.context import consulting
+from derive.context import consulting, terms_of
 from derive.decide.certificate import certificate, replayed
 from derive.decide.hypotheses import free_gains, inverses_in, names_in, not_needed, pruned, used, without
 from derive.decide.obligations import Undefined, Unjustified, justify
@@ -37,13 +37,14 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
     """Decide a statement between matrices or traces."""
     work = Workspace(statement.theory, time.monotonic() + seconds)
     try:
+        _justify_given(work)
         for equation in statement.equations:
             for side in (equation.lhs, equation.rhs):
                 justify(side, work)
         polys = [p for e in statement.equations for p in _polys(e, work)]
     except Undefined as found:
         return _undefined(found, statement)
-    except Unjustified as found:
+    except Unjustified:
         return _undecided(
             statement, "no reason was found why an inverse in it exists, and no instance where it does not"
         )
@@ -63,6 +64,7 @@ def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
     """Tell whether a statement is proved, its hypotheses satisfiable; nothing is refuted."""
     work = Workspace(statement.theory, time.monotonic() + seconds)
     try:
+        _justify_given(work)
         for equation in statement.equations:
             for side in (equation.lhs, equation.rhs):
                 justify(side, work, refuting=False)
@@ -81,6 +83,16 @@ def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
     except Rejected:
         return False
     return _satisfiable(statement, polys)
+
+
+def _justify_given(work: Workspace) -> None:
+    """Establish the inverses in what is given; the declarations that wait for them are taken up."""
+    for name in work.waiting():
+        item = work.theory.theory.declared[name]
+        for term in terms_of(item) if name not in work.reading.adopted else ():
+            justify(term, work, refuting=False)
+    if work.waiting():
+        raise Rejected(f"{work.waiting()[0]}: no reason was found why an inverse in it exists")
 
 
 # ------------------------------------------------------------------------------------------------ each equation
@@ -234,7 +246,7 @@ def _undecided(statement: Statement, note: str) -> Answer:
     return Answer(Verdict.undecided, assumed=statement.assumed, notes=(note,))
 
 
-# ------------------------------------------------------------------------------------------------ satisfiable hypotheses
+# ------------------------------------------------------------------------------------------------ satisfiable
 class Same:
     """A key by identity; a theory is never changed once it is made."""
 
@@ -267,6 +279,10 @@ def _satisfiable(statement: Statement, polys: Iterable[Poly]) -> bool:
 @lru_cache(maxsize=1024)
 def _has_instance(key: Same, letters: frozenset[str], scalars: frozenset[str]) -> bool:
     work = Workspace(key.theory, time.monotonic() + VACUITY)
+    try:
+        _justify_given(work)
+    except (Undefined, Unjustified, Rejected):
+        return False
     problem = work.problem()
     if problem is None:
         return False

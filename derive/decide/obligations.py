@@ -56,7 +56,7 @@ def justify(term: Term, work: Workspace, refuting: bool = True) -> None:
     if work.inverse(poly) is not None or _by_factors(term.body, work) or invert(poly, work) is not None:
         return
     found = work.refute(poly, relation="invertible", seconds=SECONDS) if refuting else None
-    if found:
+    if found and not set(GENERIC) & set(found.scalars):  # a generic point may be moved
         raise Undefined(term.body, found)
     raise Unjustified(term.body)
 
@@ -164,10 +164,17 @@ def _candidates(poly: Poly, work: Workspace, depth: int) -> Iterator[Poly | None
             yield other.scale(1 / c)
         if c := ratio(poly, other):
             yield letter.scale(1 / c)
+    yield _rewritten(poly, work, depth)
     yield _negative(poly, work, depth)
     yield _word(poly, work, depth)
     yield from _multiples(poly, work, depth)
     yield from _exchanged(poly, work, depth)
+
+
+def _rewritten(poly: Poly, work: Workspace, depth: int) -> Poly | None:
+    """Return the inverse of what a matrix is by definition."""
+    found = _reduced(poly, work, work.relations_on([poly]))
+    return None if found == poly else invert(found, work, depth + 1)
 
 
 def _negative(poly: Poly, work: Workspace, depth: int) -> Poly | None:

@@ -1,4 +1,4 @@
-"""Inequalities: the Loewner order by squares, completed squares and comparison; traces by products of two matrices >= 0.
+"""Inequalities: the Loewner order by squares and comparison; traces by products of two matrices >= 0.
 
 What is proposed here is replayed by the rules for positivity; a proposal that no random instance supports is dropped.
 """
@@ -13,7 +13,7 @@ from derive.decide.workspace import Workspace
 from derive.derivation import Proof
 from derive.kernel import ANY, Certificate, Poly, Rejected, Term, replay
 from derive.matrix.normal import reduced
-from derive.matrix.positivity import prove_comparison, proposals, rests
+from derive.matrix.positivity import proposals, prove_comparison, rests
 from derive.rules import Comparison, Context, Grid, Positivity, Square, differentiate
 from derive.terms import grid_map
 
@@ -115,7 +115,7 @@ def _dominated(poly: Poly, work: Workspace) -> Iterator[tuple[Square, ...]]:
     The squares F_i H_i F_i' of G give the squares [I, -Y Z^-1] F_i H_i (.)'.
     """
     context, flip = work.reading.context, work.reading.context.alphabet.transpose
-    for fact, core, inverse in _cores(work):
+    for _, core, inverse in _cores(work):
         ((_, (letter,)),) = inverse.terms
         taken = Poly({k: -c for k, c in poly.terms.items() if letter in k[1]}, poly.rows, poly.cols)
         facts = {n: f for n, f in context.facts.items() if f.matrix == ((inverse,),) and f.kind == "pd"}

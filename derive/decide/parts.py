@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from derive.decide.order import TraceOrder, check_trace_order
@@ -20,7 +20,7 @@ class Part:
     """The proof of one equation or inequality."""
 
     rule: Rule
-    proof: Proof = Proof()
+    proof: Proof = field(default_factory=Proof)
     order: TraceOrder | None = None
 
 

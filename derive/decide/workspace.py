@@ -18,6 +18,7 @@ from derive.matrix.positivity import prove_positive
 from derive.matrix.refute import refute
 from derive.matrix.sample import holds_at, sample
 from derive.matrix.search import prove
+from derive.real import UNIT
 from derive.rules import Fact, Grid, Positivity, Square
 from derive.terms import Equation, Reading, Zero, lower
 from derive.theory.claims.base import ClaimTheory
@@ -83,7 +84,7 @@ class Workspace:
 
     def take(self, *items: Item) -> None:
         """Accept lemmas or inverses, and keep them for the certificate."""
-        self.reading = accept(items, self.reading)
+        self.reading = accept(items, self.reading, self.theory.theory)
         self.items += items
 
     def fresh(self) -> str:
@@ -102,13 +103,18 @@ class Workspace:
     def problem(self) -> Hypotheses | None:
         """Return what a counterexample has to satisfy; None if not all of it can be tested."""
         extra = conditions(self.theory)
-        if extra is None:
+        if extra is None or self.waiting():
             return None
         context, full = self.reading.context, self.theory.reading.context
         relations = {**{n: p for n, p in full.relations.items() if n not in context.relations}, **context.relations}
         letters = {name: poly for poly, name in self.reading.inverses.items()}
-        facts = {**full.facts, **extra}
+        declared = {n: f for n, f in context.facts.items() if n in self.theory.theory.declared}
+        facts = {**full.facts, **declared, **extra}
         return Hypotheses(context.alphabet, relations, facts, letters, context.nonnegative)
+
+    def waiting(self) -> list[str]:
+        """Return the declarations that wait for the reason of an inverse."""
+        return [name for name in self.theory.theory.declared if name not in self.reading.adopted]
 
     def equations(self, every_gain: bool) -> Hypotheses:
         """Return the equations that a proof may use, without those of the optimal gain if asked so."""
@@ -220,7 +226,8 @@ class Workspace:
         """Search for an exact instance of all hypotheses where lhs relation rhs fails."""
         problem = self.problem()
         zero = Poly({}, lhs.rows, lhs.cols)
-        if problem is None:
+        scalars = {s for p in (lhs, rhs or zero) for m, _ in p.terms for s in m}
+        if problem is None or UNIT in scalars:  # an instance is real
             return None
         bound = min(self.left, seconds)
         return refute(lhs, zero if rhs is None else rhs, problem, relation=relation, trace=trace, seconds=bound)

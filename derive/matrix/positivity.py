@@ -24,7 +24,7 @@ from derive.rules import (
     replay_positivity,
 )
 
-__all__ = ["prove_comparison", "prove_positive", "proposals", "rests", "schur_complement", "schur_squares"]
+__all__ = ["proposals", "prove_comparison", "prove_positive", "rests", "schur_complement", "schur_squares"]
 
 Place = tuple[int, Word]  # a block row of the claim and a word u in it
 Form = dict[tuple[Place, Place], Fraction]

@@ -24,7 +24,7 @@ from derive.matrix.recheck import confirm
 if TYPE_CHECKING:
     from flint import fmpq, fmpq_mat
 
-__all__ = ["refute", "satisfy"]
+__all__ = ["instances", "refute", "satisfy"]
 
 ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried; tries of a size
 TRIES = 2000  # attempts at scalars
@@ -93,6 +93,19 @@ def satisfy(problem: Hypotheses, polys: Sequence[Poly], *, seconds: float = 2.0)
             if confirm(found, nothing, nothing, problem):
                 return found
     return None
+
+
+def instances(problem: Hypotheses, polys: Sequence[Poly], count: int, *, seconds: float = 1.0) -> list[Instance]:
+    """Return random matrices that satisfy the hypotheses which bear on some polynomials; fewer if time is up."""
+    deadline, nothing, found = time.monotonic() + seconds, Poly({}, "1", "1"), list[Instance]()
+    for plan in make_plans(problem, polys)[-1:]:
+        attempt = Attempt(problem, plan, nothing, nothing, "false", False)
+        for instance in matrix_instances(problem, plan, [*polys], repeat=3):
+            if len(found) == count or time.monotonic() > deadline:
+                break
+            if attempt.fails(instance):
+                found.append(instance)
+    return found
 
 
 def _candidates(attempts: Sequence[Attempt]) -> Iterator[tuple[Attempt, Instance]]:

@@ -1,0 +1,216 @@
+"""Single edits of a formula, the smallest first, each with its description.
+
+A letter, a transpose, an inverse, a sign, a factor 2, a factor or addend more or less, two factors swapped. Only edits
+whose shapes fit are made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from fractions import Fraction
+
+from derive.latex.plain import plain
+from derive.terms import Block, Dot, Expect, Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose
+
+__all__ = ["Edit", "Shape", "edits", "shape_of"]
+
+Shape = tuple[str, str]
+
+
+@dataclass(frozen=True)
+class Edit:
+    """The edited formula, what was done, how large a change that is, and the kind and the piece for an explanation."""
+
+    term: Term
+    text: str
+    cost: int
+    kind: str
+    piece: str = ""
+
+
+def shape_of(term: Term) -> Shape | None:
+    """Return (rows, cols) of a matrix, () for a number, or None if shapes do not fit."""
+    match term:
+        case Symbol(scalar=True) | Number():
+            return ("", "")
+        case Symbol(rows=rows, cols=cols):
+            return rows, cols
+        case Identity(size):
+            return size, size
+        case Neg(body) | Dot(body) | Expect(body):
+            return shape_of(body)
+        case Transpose(body):
+            found = shape_of(body)
+            return found and (found[1], found[0])
+        case Inverse(body):
+            found = shape_of(body)
+            return found if found and found[0] == found[1] else None
+        case Sum(addends):
+            shapes = {shape_of(a) for a in addends}
+            return shapes.pop() if len(shapes) == 1 else None
+        case Product(factors):
+            total: Shape = ("", "")
+            for factor in factors:
+                found = shape_of(factor)
+                if found is None or (total != ("", "") and found != ("", "") and total[1] != found[0]):
+                    return None
+                total = found if total == ("", "") else total if found == ("", "") else (total[0], found[1])
+            return total
+        case _:
+            return getattr(term, "rows", ""), getattr(term, "cols", "")
+
+
+def edits(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
+    """Iterate over the edits of a term at one place, in no particular order.
+
+    Args:
+        term: the formula.
+        letters: the letters that may be put in.
+        addends: the terms that may be added to a sum.
+    """
+    wanted = shape_of(term)
+    for edit in _at(term, letters, addends):
+        if shape_of(edit.term) == wanted and edit.term != term:
+            yield edit
+
+
+def _at(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
+    yield from _here(term, letters, addends)
+    for rebuild, child in _places(term):
+        for edit in _at(child, letters, addends):
+            yield replace(edit, term=rebuild(edit.term))
+
+
+def _places(term: Term) -> Iterator[tuple[Callable[[Term], Term], Term]]:
+    """Iterate over the terms directly below, each with the function that puts another in its place."""
+    if isinstance(term, (Symbol, Number, Identity)):
+        return
+    if isinstance(term, Block):
+        for i, row in enumerate(term.rows):
+            for j, entry in enumerate(row):
+                yield (lambda new, i=i, j=j: Block(_changed(term.rows, i, _changed(term.rows[i], j, new)))), entry
+        return
+    for f in fields(term):  # type: ignore[arg-type]
+        value = getattr(term, f.name)
+        if isinstance(value, Term):
+            yield (lambda new, name=f.name: replace(term, **{name: new})), value  # type: ignore[type-var]
+        elif isinstance(value, tuple) and value and isinstance(value[0], Term):
+            for i, child in enumerate(value):
+                yield (lambda new, name=f.name, v=value, i=i: _rebuilt(term, name, v, i, new)), child
+
+
+def _rebuilt(term: Term, name: str, values: tuple[Term, ...], at: int, new: Term) -> Term:
+    """Put a child in its place; a product in a product and a sum in a sum are flattened, a factor 1 is left out."""
+    if isinstance(term, Product) and new == Number(Fraction(1)) and len(values) > 1:
+        rest = (*values[:at], *values[at + 1 :])
+        return rest[0] if len(rest) == 1 else Product(rest)
+    inner = new.factors if isinstance(term, Product) and isinstance(new, Product) else (new,)
+    inner = new.addends if isinstance(term, Sum) and isinstance(new, Sum) else inner
+    return replace(term, **{name: (*values[:at], *inner, *values[at + 1 :])})  # type: ignore[type-var]
+
+
+def _changed(values: tuple, at: int, new) -> tuple:
+    return (*values[:at], new, *values[at + 1 :])
+
+
+def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
+    match term:
+        case Symbol(scalar=False):
+            yield from _letter(term, letters)
+        case Transpose(body):
+            yield Edit(body, f"{plain(body)} for {plain(term)}", 2, "transpose", plain(body))
+        case Inverse(body):
+            yield Edit(body, f"without the inverse of {plain(body)}", 2, "inverse", plain(body))
+        case Number(value):
+            yield Edit(Number(2 * value), "twice the factor", 2, "factor 2")
+            yield Edit(Number(value / 2), "half the factor", 2, "factor 2")
+            yield Edit(Number(-value), "the other sign of the factor", 2, "sign")
+        case Sum(parts):
+            yield from _sum(parts, addends)
+        case Product(factors):
+            yield from _product(factors, letters)
+        case _:
+            pass
+    if isinstance(term, (Symbol, Transpose, Inverse)) and not getattr(term, "scalar", False):
+        yield from _around(term, letters)
+    found = shape_of(term)
+    if found and found[0] and not isinstance(term, Sum):
+        for addend in addends:
+            if shape_of(addend) == found:
+                yield Edit(Sum((term, addend)), f"with the addend {plain(addend)}", 4, "addend", plain(addend))
+        if isinstance(term, (Product, Symbol)):
+            yield Edit(_times(2, term), f"2 {plain(term)} for {plain(term)}", 3, "factor 2")
+            yield Edit(_times(Fraction(1, 2), term), f"1/2 {plain(term)} for {plain(term)}", 3, "factor 2")
+            yield Edit(Neg(term), f"the other sign of {plain(term)}", 2, "sign", plain(term))
+
+
+def _times(number: int | Fraction, term: Term) -> Term:
+    factors = term.factors if isinstance(term, Product) else (term,)
+    return Product((Number(Fraction(number)), *factors))
+
+
+def _letter(term: Symbol, letters: Sequence[Symbol]) -> Iterator[Edit]:
+    for other in letters:
+        if other.letter == term.letter:
+            continue
+        same = other.glyph.letter == term.glyph.letter
+        if (other.rows, other.cols) == (term.rows, term.cols):
+            yield Edit(other, f"{plain(other)} for {plain(term)}", 1 if same else 2, "letter", plain(other))
+        if (other.cols, other.rows) == (term.rows, term.cols) and other.rows != other.cols:
+            yield Edit(other.T, f"{plain(other.T)} for {plain(term)}", 2, "letter", plain(other))
+    if not term.symmetric:
+        yield Edit(term.T, f"{plain(term.T)} for {plain(term)}", 2, "transpose", plain(term.T))
+    if term.rows == term.cols:
+        yield Edit(term.inv, f"{plain(term.inv)} for {plain(term)}", 2, "inverse", plain(term))
+
+
+def _around(term: Term, letters: Sequence[Symbol]) -> Iterator[Edit]:
+    """Put a factor before or after a factor."""
+    shape = shape_of(term)
+    if not shape:
+        return
+    for factor in _factors(letters):
+        size = shape_of(factor)
+        if size and size[1] == shape[0]:
+            text = f"with {plain(factor)} in front of {plain(term)}"
+            yield Edit(Product((factor, term)), text, 3, "factor", plain(factor))
+        if size and size[0] == shape[1]:
+            text = f"with {plain(factor)} after {plain(term)}"
+            yield Edit(Product((term, factor)), text, 3, "factor", plain(factor))
+
+
+def _factors(letters: Sequence[Symbol]) -> Iterator[Term]:
+    for letter in letters:
+        yield letter
+        if not letter.symmetric:
+            yield letter.T
+        if letter.rows == letter.cols:
+            yield letter.inv
+
+
+def _sum(parts: tuple[Term, ...], addends: Sequence[Term]) -> Iterator[Edit]:
+    shape = shape_of(parts[0])
+    for i, part in enumerate(parts):
+        rest = (*parts[:i], *parts[i + 1 :])
+        text = plain(part.body if isinstance(part, Neg) else part)
+        flipped = part.body if isinstance(part, Neg) else Neg(part)
+        yield Edit(Sum(_changed(parts, i, flipped)), f"the other sign of {text}", 2, "sign", text)
+        yield Edit(rest[0] if len(rest) == 1 else Sum(rest), f"without {text}", 4, "drop", text)
+    for addend in addends:
+        if shape_of(addend) == shape:
+            yield Edit(Sum((*parts, addend)), f"with the addend {plain(addend)}", 4, "addend", plain(addend))
+            yield Edit(Sum((*parts, Neg(addend))), f"less {plain(addend)}", 4, "addend", plain(addend))
+
+
+def _product(factors: tuple[Term, ...], letters: Sequence[Symbol]) -> Iterator[Edit]:
+    for i in range(len(factors)):
+        rest = (*factors[:i], *factors[i + 1 :])
+        if rest:
+            yield Edit(
+                rest[0] if len(rest) == 1 else Product(rest), f"without the factor {plain(factors[i])}", 3, "drop"
+            )
+        if i + 1 < len(factors):
+            swapped = (*factors[:i], factors[i + 1], factors[i], *factors[i + 2 :])
+            text = f"{plain(factors[i])} and {plain(factors[i + 1])} swapped"
+            yield Edit(Product(swapped), text, 2, "swap")

@@ -1,0 +1,184 @@
+"""The nearest true formula to a refuted one: a single edit, proved before it is suggested.
+
+Most edits fail at a random exact instance of the theory's equations, in microseconds; the rest are proved, the smallest
+first. For mistakes that are often made there is a sentence that explains them.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from derive.claim import Nearest
+from derive.decide.edits import Edit, edits
+from derive.decide.evaluate import NoValue, Point
+from derive.decide.explain import sentence
+from derive.decide.matrix import prove_statement
+from derive.decide.workspace import Workspace
+from derive.interpret.statement import Statement
+from derive.kernel import Poly
+from derive.latex import latex
+from derive.matrix.instance import Instance
+from derive.matrix.refute import instances
+from derive.matrix.sample import sample
+from derive.terms import Dot, Equation, Expect, Symbol, Term, Trace, Transpose, walk
+from derive.theory.claims.base import ClaimTheory
+
+__all__ = ["nearest", "with_equations"]
+
+SECONDS = 1.5  # in all
+TRIED = 12  # edits that are proved or not, after the random instances
+POINTS = 2
+CROSS = ("N", "S")  # without this letter in a claim the noises are uncorrelated
+
+
+def nearest(statement: Statement, seconds: float = SECONDS) -> tuple[Nearest, str] | None:
+    """Search for the nearest true formula.
+
+    Returns:
+        The formula and a sentence that explains the mistake, or "" if there is none; None if no single edit is true.
+    """
+    if len(statement.equations) != 1:
+        return None
+    deadline = time.monotonic() + seconds
+    (equation,) = statement.equations
+    letters = _letters(statement)
+    wide = _theory(statement, [*letters, *statement.symbols])
+    points = _points(wide, [*letters, *statement.symbols], equation)
+    if not points:
+        return None
+    tried = 0
+    seen: set[Equation] = set()
+    for edit, changed in _ordered(equation, letters):
+        if time.monotonic() > deadline or tried >= TRIED:
+            return None
+        if changed in seen or not _holds(changed, points):
+            continue
+        seen.add(changed)
+        tried += 1
+        if _trivial(changed, equation):
+            continue
+        candidate = with_equations(statement, (changed,))
+        if prove_statement(candidate, min(1.0, deadline - time.monotonic())):
+            return Nearest(latex(changed), edit.text), sentence(edit, statement.theory.key)
+    return None
+
+
+def _ordered(equation: Equation, letters: Sequence[Symbol]) -> Iterator[tuple[Edit, Equation]]:
+    """Iterate over edited equations, the smallest edit first; the side that is not a letter alone comes first."""
+    found: list[tuple[int, int, Edit, Equation]] = []
+    sides = ("rhs", "lhs") if _is_plain(equation.lhs) else ("lhs", "rhs")
+    addends = _addends(equation, letters)
+    for order, side in enumerate(sides):
+        for edit in edits(getattr(equation, side), letters, addends):
+            if order and not _is_plain(edit.term) and _is_plain(getattr(equation, side)):
+                continue  # a formula for 2 X is no formula for X
+            found.append((edit.cost + 2 * order, len(found), edit, replace(equation, **{side: edit.term})))
+    if equation.relation in ("⪰", "≻", "≥", ">"):
+        turned = Equation(equation.rhs, equation.relation, equation.lhs)
+        found.append((1, len(found), Edit(equation.lhs, "the other way round", 1, "order"), turned))
+        if equation.relation in ("≻", ">"):
+            weak = replace(equation, relation={"≻": "⪰", ">": "≥"}[equation.relation])
+            found.append((0, len(found), Edit(equation.lhs, "not strict", 0, "strict"), weak))
+    for _, _, edit, changed in sorted(found, key=lambda item: item[:2]):
+        yield edit, changed
+
+
+def _is_plain(term: Term) -> bool:
+    """Tell whether a side is a letter, its transpose, derivative, trace or expectation."""
+    if isinstance(term, (Transpose, Dot, Trace)):
+        return _is_plain(term.body)
+    return isinstance(term, (Symbol, Expect))
+
+
+def _trivial(changed: Equation, original: Equation) -> bool:
+    """Tell whether an edit says nothing: both sides alike."""
+    return changed.lhs == changed.rhs != original.rhs
+
+
+# ------------------------------------------------------------------------------------------------ what may be put in
+def _letters(statement: Statement) -> list[Symbol]:
+    """Return the matrices that people write in this theory, signals left out unless the claim has some."""
+    theory = statement.theory.theory
+    own = [s for s in statement.symbols if not s.scalar]
+    named = [t for t in statement.theory.names.values() if isinstance(t, Symbol) and not t.scalar]
+    random = theory.random | theory.uncentred
+    signals = any(s.name in random for s in own)
+    indexed = [n for s in own for n in _siblings(s, statement.theory)]
+    usual = [s for s in named if not s.name.endswith("#") and (signals or s.cols != "1") and "@" not in s.letter]
+    known = [s for s in [*own, *indexed, *usual] if signals or s.name not in random]
+    moving = any(s.args for s in own)
+    unreal = statement.theory.theory.complex
+    kept = [s for s in known if s in own or (not (s.args and not moving) and s.name not in unreal.union(CROSS))]
+    return list({s.letter: s for s in kept if s.rows and s.cols}.values())
+
+
+def _siblings(symbol: Symbol, theory: ClaimTheory) -> list[Symbol]:
+    """Return the letters with the same index, and the same letter at indices that the theory uses."""
+    from derive.theory.claims.base import split_index
+
+    stem, index = split_index(symbol.name)
+    if not index:
+        return []
+    return [
+        s for name, s in theory.theory.symbols.items() if split_index(name)[1] == index or split_index(name)[0] == stem
+    ]
+
+
+def _addends(equation: Equation, letters: Sequence[Symbol]) -> list[Term]:
+    """Return what a sum may lack: a letter, or a letter between another and its transpose, such as L V L'."""
+    found: list[Term] = [s for s in letters if s.rows == s.cols]
+    found += [x * h * x.T for h in letters if h.symmetric for x in letters if x.cols == h.rows and x.letter != h.letter]
+    return found
+
+
+# ------------------------------------------------------------------------------------------------ instances
+def _theory(statement: Statement, letters: Sequence[Symbol]) -> ClaimTheory:
+    """Return what may be used when the claim has other letters; assumptions stay as they are."""
+    if statement.assumed:
+        return statement.theory
+    return statement.theory.about({s.name for s in letters})
+
+
+def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Statement:
+    """Return a statement of other equations, read in what bears on their letters."""
+    sides = [side for e in equations for side in (e.lhs, e.rhs)]
+    symbols = tuple(dict.fromkeys(n for t in sides for n in walk(t) if isinstance(n, Symbol)))
+    return replace(statement, equations=equations, symbols=symbols, theory=_theory(statement, symbols))
+
+
+def _points(theory: ClaimTheory, letters: Sequence[Symbol], equation: Equation) -> list[Point]:
+    """Return instances at which edits are tried: of the equations, or of everything for an inequality."""
+    work = Workspace(theory, time.monotonic() + 1.0)
+    problem = work.problem()
+    if problem is None:
+        return []
+    known = problem.alphabet.letters
+    polys = [Poly({((), (s.letter,)): 1}, s.rows, s.cols) for s in letters if s.name in known and not s.scalar]
+    scalars = sorted({s.name for s in letters if s.scalar})
+    polys += [Poly({((s,), ()): 1}, "", "") for s in scalars]
+    found: list[Instance] = sample(replace(problem, facts={}), polys, POINTS)
+    if equation.relation != "=":
+        found = instances(problem, polys, POINTS)
+    return [Point(i, work.reading) for i in found]
+
+
+def _holds(equation: Equation, points: Sequence[Point]) -> bool:
+    """Tell whether an edited equation holds at every instance."""
+    from derive.matrix.exact import positive_definite, positive_semidefinite
+
+    for point in points:
+        try:
+            left, right = (point.value(side) for side in (equation.lhs, equation.rhs))
+            if equation.relation == "=":
+                good = left == right
+            elif equation.relation in ("⪰", "≻"):
+                good = (positive_definite if equation.relation == "≻" else positive_semidefinite)(left - right)
+            else:
+                good = left > right or (equation.relation == "≥" and left == right)
+        except (NoValue, TypeError, AttributeError):
+            return False
+        if not good:
+            return False
+    return True
