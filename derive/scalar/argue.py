@@ -21,10 +21,10 @@ from derive.real import NEGATION, Sign, SignProduct, constant, contrary, sign_pr
 from derive.rules import Fact
 from derive.scalar.flint_ring import FlintRing
 from derive.scalar.ideal import Ideal
-from derive.scalar.instances import Instances
+from derive.scalar.instances import Instance, Instances
 from derive.scalar.proof import Factor, Leaf, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of
 from derive.scalar.ratio import Beyond, Numbers, Ratio
-from derive.scalar.real_closed import Budget, Model, Question
+from derive.scalar.real_closed import Budget, Fact as Claim, ask
 from derive.scalar.search import Remainders, contradiction, products
 from derive.scalar.system import Case, Split, System, sign_of, system
 
@@ -32,16 +32,17 @@ __all__ = ["Failed", "Prover", "Unknown"]
 
 DEPTH = 7  # of the tree of cases
 TRIED = 24  # instances at which a sign is looked at before it is proved
+ENOUGH = 6  # of those of the theory that satisfy the case
 PRODUCTS = 300  # of facts, in one certificate of sign
 FALSE = {"≥": "positive", ">": "nonnegative", "≠": "="}  # of -p, where the claim on p fails
 
 
 class Failed(Exception):  # noqa: N818 - an answer
-    """What is needed is false; ``model`` is near numbers at which it fails, if z3 found them."""
+    """What is needed is false; ``near`` are numbers at or near those at which it fails, if z3 found them."""
 
-    def __init__(self, model: Model | None = None):
+    def __init__(self, near: Mapping[str, Fraction] | None = None):
         super().__init__("false")
-        self.model = model
+        self.near = near
 
 
 class Unknown(Exception):  # noqa: N818 - an answer
@@ -57,6 +58,7 @@ class Prover:
     names: Sequence[str]
     deadline: float
     without: frozenset[str] = frozenset()
+    seeds: Sequence[Instance] = ()  # of the theory
     certificates: bool = True
     budget: Budget = field(default_factory=Budget)
     systems: list[System] = field(default_factory=list[System])  # of the cases, as they end
@@ -96,6 +98,8 @@ class _Search:
         self.prover, self.known, self.ring = prover, known, prover.ring
         self.steps: list[Step] = []
         self.instances = Instances(known, self.ring, prover.names)
+        points = [i for i in prover.seeds if self.instances.allows(i)][:TRIED]
+        self.points = points if len(points) >= ENOUGH else self.instances.first(ENOUGH)
 
     # ------------------------------------------------------------------------------------- answers
     def nonzero(self, poly: Any) -> None:
@@ -155,7 +159,7 @@ class _Search:
     # ------------------------------------------------------------------------------------- signs
     def _signs(self, poly: Any) -> set[int]:
         """Return the signs that a polynomial has at some instances: 1, 0, -1."""
-        values = [self.instances.value(poly, i) for i in self.instances.first(TRIED)]
+        values = [self.instances.value(poly, i) for i in self.points]
         return {sign for v in values for sign in (1, 0, -1) if _has(v, sign)}
 
     def _undecided(self, poly: Any) -> Any:
@@ -220,36 +224,22 @@ class _Search:
 
     # ------------------------------------------------------------------------------------- z3 and certificates
     def _by_z3(self, relation: str, poly: Any) -> Reason:
-        facts = {name: (kind, self.ring.poly(p)) for name, (kind, p) in self.known.facts.items()}
-        facts |= {name: ("=", self.ring.poly(p)) for name, p in self.known.relations.items()}
-        choices = [[(kind, self.ring.poly(p)) for kind, p in choice] for choice in self.known.alternatives]
+        facts = facts_of(self.known)
         plain = self.ring.poly(poly)
         against = (FALSE[relation], plain if relation == "≠" else -plain)
-        question, budget = Question([*facts.values(), against], choices), self.prover.budget
-        answer = question.possible(budget, 12)
-        if answer is None:
+        found = ask({**facts, NEGATION: against}, choices_of(self.known), self.prover.budget, 12)
+        if found.possible is None:
             raise Unknown("z3 has no answer within its budget")
-        if answer:
-            raise Failed(question.model)
-        kept = self._core(facts, choices, against)
-        used = tuple(name for name in kept if name)
-        if self.prover.certificates and "" not in kept:
+        if found.possible:
+            raise Failed(found.near)
+        used = tuple(name for name in found.core if name in facts)
+        if self.prover.certificates and set(found.core) <= {*used, NEGATION}:
             sign = self._certificate(relation, plain, {n: facts[n] for n in used})
             if sign is not None:
                 return Reason("sign", sign=sign, used=used)
         return Reason("z3", used=used)
 
-    def _core(self, facts: Mapping[str, Any], choices: Sequence[Any], against: Any) -> list[str]:
-        """Return facts, and '' for the alternatives, that contradict the negated claim, none of which can be missed."""
-        kept = [*facts, *([""] if choices else [])]
-        for name in list(kept)[::-1]:
-            rest = [n for n in kept if n != name]
-            question = Question([*(facts[n] for n in rest if n), against], choices if "" in rest else ())
-            if question.possible(self.prover.budget) is False:
-                kept = rest
-        return kept
-
-    def _certificate(self, relation: str, claim: Poly, chosen: Mapping[str, Any]) -> Sign | None:
+    def _certificate(self, relation: str, claim: Poly, chosen: Mapping[str, Claim]) -> Sign | None:
         """Return a certificate of sign from the facts that z3 needed, and roots."""
         facts = {n: Fact(kind, ((p,),)) for n, (kind, p) in chosen.items() if kind != "="}
         relations = {n: p for n, (kind, p) in chosen.items() if kind == "="}
@@ -270,6 +260,19 @@ class _Search:
             if found:
                 return _sign(claim, relation, found, facts, ideal)
         return None
+
+
+def facts_of(known: System) -> dict[str, Claim]:
+    """Return facts and equations of a system, for z3."""
+    facts = {name: (kind, known.ring.poly(p)) for name, (kind, p) in known.facts.items()}
+    return facts | {name: ("=", known.ring.poly(p)) for name, p in known.relations.items()}
+
+
+def choices_of(known: System) -> dict[str, list[Claim]]:
+    """Return the alternatives of a system, for z3."""
+    return {
+        f"choice {i}": [(kind, known.ring.poly(p)) for kind, p in choice] for i, choice in enumerate(known.alternatives)
+    }
 
 
 def _has(value: Any, sign: int) -> bool:

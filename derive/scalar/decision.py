@@ -7,7 +7,7 @@ at which the claim was evaluated, or undecided.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from itertools import islice
@@ -20,7 +20,7 @@ from derive.claim import Answer, Counterexample, Verdict
 from derive.context import Declared, DeclaredInverse
 from derive.errors import InputError
 from derive.interpret.statement import Statement
-from derive.scalar.argue import Failed, Prover, Unknown
+from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
 from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.example import NumberExample
 from derive.scalar.flint_ring import FlintRing, fraction, rational
@@ -28,7 +28,7 @@ from derive.scalar.instances import Instance, Instances
 from derive.scalar.proof import Leaf, Reason, Step, Tree, Turned, accept, leaves
 from derive.scalar.proof_file import proof_to_json
 from derive.scalar.ratio import Beyond, name_of
-from derive.scalar.real_closed import Budget, Model, Question
+from derive.scalar.real_closed import Budget, ask
 from derive.scalar.system import ROOTS, Split, System, names_in, system
 from derive.terms import Equation, Symbol, walk
 
@@ -136,19 +136,16 @@ def _satisfiable(work: Work) -> None:
 
 
 def _possible(work: Work, budget: Budget) -> bool | None:
-    facts = [(kind, work.ring.poly(p)) for kind, p in work.known.facts.values()]
-    facts += [("=", work.ring.poly(p)) for p in work.known.relations.values()]
-    choices = [[(kind, work.ring.poly(p)) for kind, p in choice] for choice in work.known.alternatives]
-    return Question(facts, choices).possible(budget)
+    return ask(facts_of(work.known), choices_of(work.known), budget).possible
 
 
 # ---------------------------------------------------------------------------------------------- proofs
 def _proved_or_not(work: Work, explain: bool) -> Answer:
-    prover = Prover(work.statement, work.ring, work.names, work.deadline)
+    prover = Prover(work.statement, work.ring, work.names, work.deadline, seeds=work.instances.first(FIRST))
     try:
         tree = prover.prove()
     except Failed as failed:
-        found = _near(work, failed.model) or work.simplest(islice(work.failures(work.instances.first(MORE)), 3))
+        found = _near(work, failed.near) or work.simplest(islice(work.failures(work.instances.first(MORE)), 3))
         return _refuted(work, found) if found else _open(work, "z3 has numbers at which it fails, none was confirmed")
     except Unknown as error:
         return _searched(work, str(error))
@@ -246,13 +243,13 @@ def _needed(work: Work, names: Sequence[str]) -> dict[str, Counterexample]:
 
 
 # ---------------------------------------------------------------------------------------------- refutations
-def _near(work: Work, model: Model | None) -> Failure | None:
+def _near(work: Work, model: Mapping[str, Fraction] | None) -> Failure | None:
     """Return an exact instance near the numbers that z3 found, the simplest that contradicts the statement."""
     if model is None:
         return None
     found: list[Failure] = []
     for largest in (1, 2, 4, 10, 100, 10**4, 10**9):
-        values = {n: model.values.get(n, Fraction(1)).limit_denominator(largest) for n in work.instances.free}
+        values = {n: model.get(n, Fraction(1)).limit_denominator(largest) for n in work.instances.free}
         instances = work.instances.at({n: rational(v) for n, v in values.items()})
         found += work.failures(instances)
         if found:

@@ -86,6 +86,14 @@ class Instances:
         """Return the instances in which the free letters have these values."""
         return [i for i in self._complete(dict(point), {}, list(self.dependent)) if self._allowed(i.values)]
 
+    def allows(self, instance: Instance) -> bool:
+        """Tell whether an instance of another system of the same letters satisfies this one for certain."""
+        equations = self.system.relations.items()
+        named = {name for _, name in self.system.roots}
+        if any(compare(self.value(p, instance), "=", fmpq(0)) is not True for n, p in equations if n not in named):
+            return False
+        return self._allowed(instance.values)
+
     def value(self, poly: Any, instance: Instance) -> Any:
         """Return the value of a polynomial in letters and roots of the system."""
         point = dict(instance.values)

@@ -1,23 +1,25 @@
 """Questions about signs of polynomials, decided by z3's procedure for real closed fields.
 
 Every question has a context of its own and a bound on resources, not on time, so that the answer is the same on every
-machine and in every order.
+machine and in every order. Letters are numbered: no name that somebody typed reaches z3.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 from typing import Any
 
 from derive.kernel import Poly
 
-__all__ = ["Budget", "Model", "Question"]
+__all__ = ["Answered", "Budget", "Fact", "ask"]
 
-LIMIT = 1_500_000  # z3's count of resources for one question
-TOTAL = 12_000_000  # and for all that one claim asks
+LIMIT = 3_000_000  # z3's count of resources for one question
+TOTAL = 20_000_000  # and for all that one claim asks
 Fact = tuple[str, Poly]  # a kind of fact, or "=" for a polynomial that is zero
+SIGN = {"nonnegative": "(>= {} 0)", "positive": "(> {} 0)", "nonzero": "(distinct {} 0)", "=": "(= {} 0)"}
 
 
 @dataclass
@@ -29,92 +31,78 @@ class Budget:
 
 
 @dataclass(frozen=True)
-class Model:
-    """Rational values near those that z3 found; exact says whether they are those."""
+class Answered:
+    """Whether there are real numbers with the signs asked for, None if undecided.
 
-    values: Mapping[str, Fraction]
-    exact: bool
+    ``core`` names facts that contradict each other; ``near`` are rational numbers at, or near, those that z3 found.
+    """
+
+    possible: bool | None
+    core: tuple[str, ...] = ()
+    near: Mapping[str, Fraction] | None = None
 
 
-@dataclass
-class Question:
-    """Facts of which it is asked whether they can hold together; of each of the alternatives one has to."""
+def ask(facts: Mapping[str, Fact], choices: Mapping[str, Sequence[Fact]], budget: Budget, digits: int = 0) -> Answered:
+    """Ask whether facts can hold together, and one of each of the choices.
 
-    facts: Sequence[Fact]
-    alternatives: Sequence[Sequence[Fact]] = ()
-    model: Model | None = field(default=None)
+    Args:
+        facts: facts by name.
+        choices: by name, facts of which one has to hold.
+        budget: what is left, of which what is spent is taken.
+        digits: accuracy of the numbers that are returned where the answer is yes; 0 for none.
+    """
+    import z3
 
-    def possible(self, budget: Budget, digits: int = 0) -> bool | None:
-        """Tell whether there are real numbers with these signs; None if it is not decided within the budget."""
-        import z3
+    if budget.left <= 0:
+        return Answered(None)
+    letters = sorted({x for _, p in chain(facts.values(), *choices.values()) for m, _ in p.terms for x in m})
+    index = {x: f"x{i}" for i, x in enumerate(letters)}
+    claims = [_fact(f, index) for f in facts.values()]
+    claims += [f"(or {' '.join(_fact(f, index) for f in choice)})" for choice in choices.values()]
+    names = [*facts, *choices]
+    context = z3.Context()
+    solver = z3.SolverFor("QF_NRA", ctx=context)
+    solver.set("rlimit", min(LIMIT, budget.left))
+    solver.from_string("".join(_script(letters, claims)))
+    answer = solver.check(*(z3.Bool(f"p{i}", context) for i in range(len(claims))))
+    budget.asked += 1
+    budget.left -= _spent(solver)
+    if answer == z3.unsat:
+        return Answered(False, tuple(names[int(str(p)[1:])] for p in solver.unsat_core()))
+    if answer != z3.sat:
+        return Answered(None)
+    return Answered(True, near=_model(solver.model(), letters, context, digits) if digits else None)
 
-        if budget.left <= 0:
-            return None
-        context = z3.Context()
-        solver = z3.SolverFor("QF_NRA", ctx=context)
-        solver.set("rlimit", min(LIMIT, budget.left))
-        write = _Writer(context)
-        solver.add(*(write.fact(*f) for f in self.facts))
-        for choice in self.alternatives:
-            solver.add(z3.Or(*(write.fact(*f) for f in choice)))
-        answer = solver.check()
-        budget.asked += 1
-        budget.left -= _spent(solver)
-        if answer == z3.sat and digits:
-            self.model = write.model(solver.model(), digits)
-        return True if answer == z3.sat else False if answer == z3.unsat else None
+
+def _script(letters: Sequence[str], claims: Sequence[str]) -> Iterator[str]:
+    yield from (f"(declare-const x{i} Real)" for i in range(len(letters)))
+    yield from (f"(declare-const p{i} Bool)(assert (=> p{i} {claim}))" for i, claim in enumerate(claims))
+
+
+def _fact(fact: Fact, index: Mapping[str, str]) -> str:
+    kind, poly = fact
+    addends = [_product(c, [index[x] for x in m]) for (m, _), c in poly.terms.items()]
+    body = addends[0] if len(addends) == 1 else f"(+ {' '.join(addends)})" if addends else "0"
+    return SIGN[kind].format(body)
+
+
+def _product(c: Fraction, letters: Sequence[str]) -> str:
+    size = f"(/ {abs(c.numerator)} {c.denominator})" if c.denominator != 1 else str(abs(c.numerator))
+    number = f"(- {size})" if c < 0 else size
+    return f"(* {number} {' '.join(letters)})" if letters else number
 
 
 def _spent(solver: Any) -> int:
-    statistics = solver.statistics()
-    return int(statistics.get_key_value("rlimit count")) if "rlimit count" in statistics.keys() else 0
+    found = {key: value for key, value in solver.statistics()}
+    return int(found.get("rlimit count", 0))
 
 
-class _Writer:
-    """Writes polynomials in a context of z3."""
+def _model(model: Any, letters: Sequence[str], context: Any, digits: int) -> dict[str, Fraction]:
+    import z3
 
-    def __init__(self, context: Any):
-        import z3
-
-        self.z3, self.context = z3, context
-        self.letters: dict[str, Any] = {}
-        self.zero = z3.RealVal(0, context)
-
-    def letter(self, name: str) -> Any:
-        if name not in self.letters:
-            self.letters[name] = self.z3.Real(f"x{len(self.letters)}", self.context)
-        return self.letters[name]
-
-    def poly(self, poly: Poly) -> Any:
-        addends = [self._product(c, m) for (m, _), c in poly.terms.items()]
-        return addends[0] if len(addends) == 1 else self.z3.Sum(addends) if addends else self.zero
-
-    def _product(self, c: Fraction, names: Iterable[str]) -> Any:
-        factors = [self.letter(n) for n in names]
-        if c != 1 or not factors:
-            factors.insert(0, self.z3.RealVal(str(c), self.context))
-        return factors[0] if len(factors) == 1 else self.z3.Product(factors)
-
-    def fact(self, kind: str, poly: Poly) -> Any:
-        value = self.poly(poly)
-        match kind:
-            case "nonnegative":
-                return value >= self.zero
-            case "positive":
-                return value > self.zero
-            case "nonzero":
-                return value != self.zero
-            case _:
-                return value == self.zero
-
-    def model(self, model: Any, digits: int) -> Model:
-        values, exact = dict[str, Fraction](), True
-        for name, letter in self.letters.items():
-            value = model.eval(letter, model_completion=True)
-            if self.z3.is_rational_value(value):
-                values[name] = Fraction(value.numerator_as_long(), value.denominator_as_long())
-            else:
-                near = value.approx(digits)
-                values[name] = Fraction(near.numerator_as_long(), near.denominator_as_long())
-                exact = False
-        return Model(values, exact)
+    values = dict[str, Fraction]()
+    for i, name in enumerate(letters):
+        value = model.eval(z3.Real(f"x{i}", context), model_completion=True)
+        value = value if z3.is_rational_value(value) else value.approx(digits)
+        values[name] = Fraction(value.numerator_as_long(), value.denominator_as_long())
+    return values
