@@ -1,6 +1,7 @@
-"""A validation as text for a terminal: one table, the reasons beneath it, what is proved, one line with the verdict."""
+"""A validation as text for a terminal: one table, the reasons beneath it, what is proved, and the verdict."""
 
 from collections.abc import Iterator
+from textwrap import fill
 from typing import TextIO
 
 import numpy as np
@@ -14,6 +15,7 @@ from lmi.validation import Validation, Verdict
 
 __all__ = ["print_table"]
 
+WIDTH = 80  # columns of the verdict
 STYLES = {Verdict.AGREE: "bold green", Verdict.DISAGREE: "bold red", Verdict.UNCONFIRMED: "bold yellow"}
 
 
@@ -28,7 +30,8 @@ def print_table(validation: Validation, file: TextIO | None = None) -> None:
             console.print(Text(f"{route.name}: {route.status}"), soft_wrap=True)
     for line in proved_lines(validation):
         console.print(Text(line), soft_wrap=True)
-    console.print(Text(verdict_line(validation), style=STYLES[validation.verdict]), soft_wrap=True)
+    said = fill(verdict_line(validation), WIDTH, subsequent_indent="  ", break_on_hyphens=False)
+    console.print(Text(said, style=STYLES[validation.verdict]), soft_wrap=True)
 
 
 def proved_lines(validation: Validation) -> Iterator[str]:

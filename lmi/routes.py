@@ -191,10 +191,15 @@ def _eigenvalue_error(plant: Plant, modes: NDArray[Any]) -> float:
 
 
 def _closed_form(plant: Plant) -> Answer:
+    from derive.numeric.low_order import ORDER, low_order_output
     from derive.numeric.scalar import solve_scalar
 
+    if plant.n > ORDER:
+        return Answer(f"not applicable: for at most {ORDER} states, not {plant.n}")
     if (plant.n, plant.l) != (1, 1):
-        return Answer(f"not applicable: for one state and one output, not {plant.n} and {plant.l}")
+        value, error = low_order_output(plant)
+        error += abs(value) * np.finfo(float).eps
+        return Answer("solved", output=value, error=error, output_error=error)
     solution = solve_scalar(plant)
     P, gain = np.array([[solution.P]]), np.array([[solution.gain]])
     status = "strong" if solution.status == "strong" else "solved"
@@ -210,7 +215,9 @@ ROUTES = (
     RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
     RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, "hamiltonian"), largest=20),
     RouteSpec("interior-point", _interior_point, _OTHERS, largest=120),
-    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "hamiltonian", "closed-form"), largest=40),
+    RouteSpec(
+        "nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "hamiltonian", "closed-form"), largest=40
+    ),
     RouteSpec("integral", _integral, ("riccati", *_CONVEX, "interior-point", "nlp", "hamiltonian", "closed-form")),
     RouteSpec("hamiltonian", _hamiltonian, (*_CONVEX, "nlp", "integral", "closed-form")),
     RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", "hamiltonian")),
