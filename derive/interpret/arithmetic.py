@@ -10,7 +10,7 @@ from derive.functions import Infinity, Power, Quotient, Root
 from derive.interpret.shapes import Misfit, NotUnderstood, Shape, Typed, misfit
 from derive.latex import latex
 from derive.latex import syntax as s
-from derive.spectral import Entry
+from derive.spectral import Conjugate, Entry
 from derive.terms import Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero, walk
 
 if TYPE_CHECKING:
@@ -162,8 +162,16 @@ def raised(node: s.Raised, reader: Reader) -> Typed:
 
 
 def exponent_text(node: s.Node) -> str:
-    """Return an exponent that may belong to the name below it, such as the 2 of a variance."""
-    return str(node.value) if isinstance(node, s.Digits) else "?"
+    """Return an exponent that may belong to the name below it, such as the 2 of a variance or the f of a filter."""
+    match node:
+        case s.Digits(value):
+            return str(value)
+        case s.Name(letter, (), "", ""):
+            return letter
+        case s.Fenced(body):
+            return exponent_text(body)
+        case _:
+            return "?"
 
 
 def constant(node: s.Node) -> Fraction | None:
@@ -234,12 +242,13 @@ def transpose(typed: Typed, mark: str, reader: Reader) -> Typed:
     """Return the transpose of a term."""
     term, shape = typed
     if mark in CONJUGATE:
-        term = conjugated(term)
+        root = isinstance(term, Symbol) and term.name in reader.theory.theory.families
+        term = Conjugate(term) if root and isinstance(term, Symbol) else conjugated(term)
     return (term, None) if shape is None else (Transpose(term), (shape[1], shape[0]))
 
 
 def conjugated(term: Term) -> Term:
-    """Return the complex conjugate of a term with real matrices: jω becomes -jω.
+    """Return the complex conjugate of a term with real matrices: jω becomes -jω. That of a root has its own sign.
 
     Raises:
         NotUnderstood: the term contains s, of which the conjugate and -s are two readings.

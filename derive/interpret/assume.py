@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from derive.context import Declared, DeclaredFact, Theory, terms_of
+from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
 from derive.interpret.names import spell
+from derive.interpret.shapes import NotUnderstood, rebuilt
 from derive.latex import plain
 from derive.latex import syntax as s
-from derive.terms import Dot, Equation, Expect, Symbol, Term, walk
+from derive.terms import Dot, Equation, Expect, Identity, Number, Symbol, Term, Transpose, Zero, walk
 from derive.theory.claims.base import ClaimTheory, add_indexed, copy
 
 if TYPE_CHECKING:
@@ -32,10 +34,11 @@ class Assumptions:
         reader = self.reader
         reader.open = True
         try:
-            if not (self._dimension(node) or self._membership(node) or self._function(node) or self._definition(node)):
+            ways = self._dimension, self._membership, self._rank, self._function, self._block, self._definition
+            if not any(way(node) for way in ways):
                 from derive.interpret.meaning import compared
 
-                self.found += [(e, False) for e in compared(node, reader)]
+                self.found += [(self._ordered(e), False) for e in compared(node, reader)]
         finally:
             reader.open = False
 
@@ -44,13 +47,16 @@ class Assumptions:
         match node:
             case s.Related((s.Name(letter, (), "", ""), s.Digits(value)), ("=",)) if value == 1:
                 sizes = self.reader.theory.theory.sizes()
-                if letter in sizes and not isinstance(self._known(letter), Symbol):
-                    self.reader.shapes.count += 1
-                    self.reader.shapes.known[letter] = "1"
+                if letter in sizes and self._known(letter) is None:
+                    self._set(letter)
                     return True
                 return False
             case _:
                 return False
+
+    def _set(self, size: str) -> None:
+        self.reader.shapes.count += 1
+        self.reader.shapes.known[size] = self.reader.sizes[size] = "1"
 
     def _known(self, spelled: str) -> Term | None:
         term = self.reader.theory.names.get(spelled)
@@ -59,17 +65,48 @@ class Assumptions:
     def _membership(self, node: s.Related) -> bool:
         r"""Take up G \in \mathbb{R}^{n \times l}, which introduces a letter."""
         match node:
-            case s.Related((s.Name() as name, s.Raised(s.Name("R"), size)), ("∈",)):
+            case s.Related((s.Name() as name, s.Raised(s.Name("R" | "ℝ"), size)), ("∈",)):
                 sizes = [x.letter for x in s.walk(size) if isinstance(x, s.Name)]
-                if self.reader.named(name) is None and 1 <= len(sizes) <= 2:
-                    symbol = self.reader.introduce(name)
-                    wanted = (sizes[0], sizes[1] if len(sizes) == 2 else "1")
-                    if not symbol.scalar:
-                        self.reader.shapes.agree((symbol.rows, symbol.cols), wanted)
-                    return True
+                wanted = sizes[0] if sizes else "1", sizes[1] if len(sizes) == 2 else "1"
+                known = self.reader.named(name)
+                if known is None and not (symbol := self.reader.introduce(name)).scalar:
+                    self.reader.shapes.agree((symbol.rows, symbol.cols), wanted)
+                elif known is not None and known[1] is not None:
+                    for size, given in zip(known[1], wanted, strict=True):
+                        if given == "1" != self.reader.shapes.find(size):
+                            self._set(size)
                 return True
             case _:
                 return False
+
+    def _rank(self, node: s.Related) -> bool:
+        r"""Take up \operatorname{rank} C = m: full rank, by rows or by columns."""
+        match node:
+            case s.Related((s.Called("rank", (inner,)), s.Name(letter, (), "", "")), ("=",)):
+                term, shape = self.reader.read(inner)
+                if shape is None or letter not in shape:
+                    raise NotUnderstood("a rank: expected the number of rows or columns, full rank")
+                gram = Transpose(term) * term if shape[1] == letter else term * Transpose(term)
+                self.found.append((Equation(gram, "≻", Zero(letter, letter)), False))
+                return True
+            case _:
+                return False
+
+    def _block(self, node: s.Related) -> bool:
+        """Take up X = [X_ss, X_sv; X_sv', X_vv], which X stands for at every time."""
+        match node:
+            case s.Related((s.Name() as name, s.Matrix() as matrix), ("=" | ":=",)) if self.reader.named(name):
+                self.reader.blocks[spell(name, self.reader.notation)] = matrix
+                return True
+            case _:
+                return False
+
+    def _ordered(self, equation: Equation) -> Equation:
+        """Note that a new letter in an order relation is symmetric."""
+        for side in (equation.lhs, equation.rhs):
+            if equation.relation in ("⪰", "≻") and isinstance(side, Symbol) and side in self.reader.new.values():
+                self.reader.shapes.symmetric.add(side.name)
+        return equation
 
     def _function(self, node: s.Related) -> bool:
         """Take up L(s) = ..., which stands for its right-hand side wherever it is applied."""
@@ -111,14 +148,19 @@ class Assumptions:
 
     def extend(self, theory: ClaimTheory) -> ClaimTheory:
         """Return the theory with what is given."""
-        if not (self.found or self.reader.new or self.reader.roots):
+        reader = self.reader
+        if not (self.found or reader.new or reader.roots or reader.eigenvalues or reader.sizes):
             return theory
         made = copy(theory.theory)
         letters = theory.outline.letters if theory.outline else made
+        if reader.sizes:
+            resize(made, reader.sizes)
         for symbol in self.reader.new.values():
             _add(made, self.reader.shapes.settled_symbol(symbol))
         for root, of in self.reader.roots.values():
             _add_root(made, root, of)
+        for symbol, term, kind in reader.eigenvalues.values():
+            _add_extreme(made, symbol, reader.shapes.settle(term), kind)
         names: list[str] = []
         conditions: list[Equation] = []
         for (_, defines), equation in zip(self.found, self.settled(), strict=True):
@@ -172,6 +214,54 @@ def _add_root(made: Theory, root: Symbol, of: Symbol) -> None:
     made.assume(f"{root.name} positive", root, "≻" if strict else "⪰", text="the root is the positive one")
     if strict:
         made.inverse(f"{root.name} inverse", root, root.rows, symmetric=True, because=f"{root.name} positive")
+
+
+def _add_extreme(made: Theory, symbol: Symbol, of: Term, kind: str) -> None:
+    """Declare what an extreme eigenvalue bounds; that it is attained is known to who evaluates it."""
+    made.symbols[symbol.name] = symbol
+    size = Identity(_rows(of, made))
+    gap = of - symbol * size if kind == "least" else symbol * size - of
+    made.assume(f"{kind} eigenvalue of {plain(of)}", gap, "⪰", text="an extreme eigenvalue")
+
+
+def _rows(term: Term, made: Theory) -> str:
+    while not isinstance(term, Symbol):
+        if isinstance(term, Transpose) and isinstance(term.body, Symbol):
+            return term.body.cols
+        term = next(
+            t for t in term.children() if not (isinstance(t, Symbol) and t.scalar) and not isinstance(t, Number)
+        )
+    return term.rows
+
+
+def resize(made: Theory, sizes: Mapping[str, str]) -> None:
+    """Make dimensions of a theory 1."""
+    for name, symbol in made.symbols.items():
+        rows, cols = sizes.get(symbol.rows, symbol.rows), sizes.get(symbol.cols, symbol.cols)
+        if (rows, cols) != (symbol.rows, symbol.cols):
+            made.symbols[name] = replace(symbol, rows=rows, cols=cols)
+
+    def resized(term: Term) -> Term:
+        match term:
+            case Symbol():
+                return replace(term, rows=sizes.get(term.rows, term.rows), cols=sizes.get(term.cols, term.cols))
+            case Identity(size):
+                return Identity(sizes.get(size, size))
+            case Zero(rows, cols):
+                return Zero(sizes.get(rows, rows), sizes.get(cols, cols))
+            case _:
+                return rebuilt(term, resized)
+
+    for name, item in made.declared.items():
+        match item:
+            case Declared(statement=e):
+                made.declared[name] = replace(item, statement=Equation(resized(e.lhs), e.relation, resized(e.rhs)))
+            case DeclaredFact(matrix=matrix):
+                made.declared[name] = replace(item, matrix=resized(matrix))
+            case DeclaredInverse(of=of):
+                made.declared[name] = replace(item, of=resized(of))
+            case _:
+                pass
 
 
 def _fresh(name: str, made: Theory) -> str:

@@ -7,10 +7,11 @@ index #, and functions of time or frequency under "P()", "Phi_y(s)".
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Mapping
 
 from derive.interpret.shapes import NotUnderstood
-from derive.latex.alphabet import GREEK
+from derive.latex.alphabet import ACCENTS, GREEK
 from derive.latex.syntax import Name
 from derive.terms import Symbol, Term
 from derive.theory.claims.base import INDEX, ClaimTheory, at_index, count
@@ -19,6 +20,7 @@ LETTERS = {char: name for name, char in GREEK.items()}
 SAME = {"overline": "bar", "widehat": "hat", "widetilde": "tilde", "varphi": "varphi", "check": "hat"}
 CONDITIONAL = re.compile(r"^(.+)\|(.+)$")
 DOT = {"dot": 1, "ddot": 2}
+MARKS = {mark: name for name, (_, _, mark) in ACCENTS.items()}
 
 
 def spell(name: Name, notation: Mapping[str, str]) -> str:
@@ -39,12 +41,14 @@ def spell(name: Name, notation: Mapping[str, str]) -> str:
 
 
 def tidy(index: str) -> str:
-    """Return an index without spaces, backslashes and accents' braces, Greek letters by name."""
-    out = "".join(LETTERS.get(c, c) for c in index)
-    out = out.replace("\\infty", "∞").replace("infty", "∞").replace("\\mid", "|").replace("\\vert", "|")
-    for old, new in SAME.items():
-        out = out.replace("\\" + old, new)
-    return re.sub(r"[\\{}\s]", "", out)
+    """Return an index without spaces, braces and brackets, Greek letters and accents by name: z-ȳ is z-bary."""
+    out = ""
+    for char in unicodedata.normalize("NFD", index):
+        if char in MARKS:
+            out = out[:-1] + MARKS[char] + out[-1:]
+        else:
+            out += LETTERS.get(char, char)
+    return re.sub(r"[\\{}()\s]", "", out.replace("infty", "∞").replace("overline", "bar"))
 
 
 def derivatives(name: Name) -> int:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
 from derive.interpret import arithmetic, operators
 from derive.interpret.names import derivatives, look_up, spell, unknown
 from derive.interpret.shapes import NotUnderstood, Shapes, Typed
 from derive.interpret.times import difference, index_of, literal, time_of
-from derive.latex import latex
+from derive.latex import latex, plain
 from derive.latex import syntax as s
+from derive.latex.alphabet import GREEK
+from derive.spectral import At
 from derive.terms import Delta, Dot, Glyph, Symbol, Term
 
 if TYPE_CHECKING:
     from derive.theory.claims.base import ClaimTheory
 
+EXTREME = {"underline lambda": True, "bar lambda": False, "lambda_min": True, "lambda_max": False}
 GREEK_NUMBERS = frozenset("αβγδεζηθικλμνξοπρστυφχψωϵ")
 
 
@@ -28,6 +32,9 @@ class Reader:
         self.new: dict[str, Symbol] = {}
         self.functions: dict[str, tuple[str, s.Node]] = {}
         self.roots: dict[str, tuple[Symbol, Symbol]] = {}
+        self.blocks: dict[str, s.Node] = {}
+        self.eigenvalues: dict[str, tuple[Symbol, Term, str]] = {}
+        self.sizes: dict[str, str] = {}
         self.times: list[str] = []
         self.moving: frozenset[str] = frozenset()
         self.open = False  # whether a letter that the theory does not know is a new one
@@ -58,6 +65,8 @@ class Reader:
     def named(self, name: s.Name) -> Typed | None:
         """Return what a name stands for; None if nothing."""
         spelled = spell(name, self.notation)
+        if spelled in self.blocks:
+            return self.read(self.blocks[spelled])
         term = self.new.get(spelled)
         if term is None and spelled in self.moving:
             term = self.theory.names.get(spelled + "()")
@@ -119,6 +128,19 @@ class Reader:
         self.roots[root.name] = root, term
         return self.typed(root)
 
+    def extreme(self, least: bool, typed: Typed) -> Typed:
+        """Return the letter for the least or largest eigenvalue of a symmetric matrix."""
+        term, shape = typed
+        if shape is None:
+            return typed
+        arithmetic.square(typed, "an eigenvalue", self)
+        kind = "min" if least else "max"
+        name = f"λ{kind}({plain(term)})"
+        glyph = Glyph("λ", sub=kind)
+        symbol = Symbol(name, glyph=glyph, scalar=True, show_args=(latex(term),) if isinstance(term, Symbol) else None)
+        self.eigenvalues[name] = symbol, term, "least" if least else "largest"
+        return symbol, None
+
     # -------------------------------------------------------------------------------------------- applied
     def applied(self, node: s.Applied) -> Typed:
         """Read a letter at times, indices or frequencies."""
@@ -148,10 +170,17 @@ class Reader:
         if spelled in self.functions and len(arguments) == 1:
             parameter, body = self.functions[spelled]
             return self.read(replaced(body, parameter, arguments[0]))
+        if spelled in self.blocks:
+            return self.read(applied_within(self.blocks[spelled], arguments))
+        if spelled in EXTREME and len(arguments) == 1:
+            return self.extreme(EXTREME[spelled], self.read(arguments[0]))
         key = f"{spelled}({','.join(map(literal, arguments))})"
         found = self.new.get(key) or self.theory.names.get(key)
         if found is not None:
             return self.typed(found)
+        function = self.theory.names.get(spelled + "(s)")
+        if isinstance(function, Symbol) and len(arguments) == 1:
+            return At(function, self.theory.theory.symbols["s"], self.read(arguments[0])[0]), self.typed(function)[1]
         moving = self.theory.names.get(spelled + "()") or self.new.get(spelled) or look_up(spelled, self.theory)
         times = [time_of(a) for a in arguments]
         if isinstance(moving, Symbol) and moving.args and len(moving.args) == len(times) and None not in times:
@@ -188,8 +217,6 @@ class Reader:
 
 def replaced(node: s.Node, parameter: str, argument: s.Node) -> s.Node:
     """Return a node with an argument in the place of a letter."""
-    from dataclasses import fields, replace
-
     if isinstance(node, s.Name) and node.letter == parameter and not (node.sub or node.sup or node.accents):
         return s.Fenced(argument) if not isinstance(argument, (s.Name, s.Digits)) else argument
 
@@ -201,9 +228,20 @@ def replaced(node: s.Node, parameter: str, argument: s.Node) -> s.Node:
     return replace(node, **{f.name: within(getattr(node, f.name)) for f in fields(node) if f.name != "span"})
 
 
-def _is_greek(letter: str) -> bool:
-    from derive.latex.alphabet import GREEK
+def applied_within(node: s.Node, arguments: tuple[s.Node, ...]) -> s.Node:
+    """Return a block matrix whose letters are taken at some times."""
+    if isinstance(node, s.Name):
+        return s.Applied(node, arguments)
 
+    def within(part: object) -> object:
+        if isinstance(part, s.Node):
+            return applied_within(part, arguments)
+        return tuple(map(within, part)) if isinstance(part, tuple) else part  # type: ignore[reportUnknownVariableType]
+
+    return replace(node, **{f.name: within(getattr(node, f.name)) for f in fields(node) if f.name != "span"})
+
+
+def _is_greek(letter: str) -> bool:
     return GREEK.get(letter, letter) in GREEK_NUMBERS
 
 

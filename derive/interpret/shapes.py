@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 
 from derive.errors import InputError
@@ -27,6 +28,7 @@ class Shapes:
     def __init__(self) -> None:
         self.known: dict[str, str] = {}
         self.count = 0
+        self.symmetric: set[str] = set()  # new letters that are known to be
 
     def fresh(self) -> str:
         """Return a dimension that is not known yet."""
@@ -81,20 +83,27 @@ class Shapes:
             case Symbol():
                 return self._symbol(term)
             case _:
-                return replace(term, **{f.name: self._within(getattr(term, f.name)) for f in fields(term)})  # type: ignore[type-var]
-
-    def _within(self, part: object) -> object:
-        if isinstance(part, Term):
-            return self.settle(part)
-        return tuple(map(self._within, part)) if isinstance(part, tuple) else part  # type: ignore[reportUnknownVariableType]
+                return rebuilt(term, self.settle)
 
     def _symbol(self, symbol: Symbol) -> Symbol:
         rows, cols = self.find(symbol.rows), self.find(symbol.cols)
-        if (rows, cols) == (symbol.rows, symbol.cols):
+        symmetric = symbol.symmetric or symbol.name in self.symmetric
+        if (rows, cols, symmetric) == (symbol.rows, symbol.cols, symbol.symmetric):
             return symbol
         if UNKNOWN in rows + cols:
             raise NotUnderstood(f"{latex(symbol)}: its shape does not follow from its neighbours")
-        return replace(symbol, rows=rows, cols=cols)
+        return replace(symbol, rows=rows, cols=cols, symmetric=symmetric)
+
+
+def rebuilt(term: Term, change: Callable[[Term], Term]) -> Term:
+    """Return a term with every term directly below it changed."""
+
+    def within(part: object) -> object:
+        if isinstance(part, Term):
+            return change(part)
+        return tuple(map(within, part)) if isinstance(part, tuple) else part  # type: ignore[reportUnknownVariableType]
+
+    return replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})  # type: ignore[type-var]
 
 
 def _shown(size: str) -> str:

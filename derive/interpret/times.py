@@ -53,6 +53,8 @@ def index_of(node: s.Node) -> str:
             return literal(node)
         case s.Plus((("+", one), (sign, two))):
             return literal(one) + sign + literal(two)
+        case s.Given(body, condition):
+            return f"{index_of(body)}|{index_of(condition)}"
         case _:
             return ""
 

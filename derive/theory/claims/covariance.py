@@ -26,9 +26,11 @@ def outline() -> Outline:
     t = copy(lecture, lecture.symbols)
     t.key, t.title = KEY, "State covariance in continuous time"
     s = t.symbols
-    names: dict[str, Term] = {k: s[k] for k in ("A", "B", "N", "X", "x", "n", "v", "Phi")}
+    names: dict[str, Term] = {k: s[k] for k in ("A", "B", "N", "X", "x", "n", "v")}
+    names["Phi()"] = s["Phi"].at("t", "τ")
     names |= {"bar x": s["xbar"], "bar n": s["nbar"], "tilde x": s["xtilde"], "tilde n": s["ntilde"]}
-    names |= {k: s[k] for k in BLOCKS if k != "X_vv_inf"} | {k: s[k] for k in ("Phi_ss", "Phi_sv", "Phi_vv")}
+    names |= {k: s[k] for k in BLOCKS if k != "X_vv_inf"}
+    names |= {f"{k}()": s[k].at("t", "τ") for k in ("Phi_ss", "Phi_sv", "Phi_vv")}
     names |= {"X_vv(∞)": s["X_vv_inf"], "X_vv^∞": s["X_vv_inf"], "X_vv,∞": s["X_vv_inf"]}
     return Outline(KEY, t.title, t, names, declare, frozenset({"A", "B", "N", "X", "Phi", *SIGNALS, *BLOCKS}))
 

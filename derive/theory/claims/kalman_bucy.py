@@ -68,6 +68,13 @@ def _spectra(t: Theory) -> None:
     t.scalar("i", meaning="number of an eigenvalue")
     t.scalar("m", meaning="number of states")
     t.roots("λ", t.symbols["i"], t.symbols["m"], Glyph("λ", sub="i"), of="A", meaning="eigenvalue of A")
+    for root, of, glyph in (("φ", "zero", "φ"), ("η", "pole", "η"), ("ζ", "zero in the right half plane", "z")):
+        t.roots(root, t.symbols["i"], t.symbols["m"], Glyph(glyph, sub="i"), meaning=f"{of} of f")
+    for function in "fpq":
+        t.scalar(function)
+        t.symbols[function] = replace(t.symbols[function], show_args=("s",))
+    t.parameter("σ0", Glyph("σ", sub="0"), meaning="real part of s_0")
+    t.parameter("ω0", Glyph("ω", sub="0"), meaning="imaginary part of s_0")
     for letter in "yz":
         for shown in ("s", "ω"):
             name = f"Phi_{letter}({shown})"
@@ -88,6 +95,11 @@ def _names(t: Theory) -> dict[str, Term]:
     for letter in "yz":
         for shown, key in (("s", "s"), ("ω", "omega")):
             names[f"Phi_{letter}({key})"] = names[f"S_{letter}({key})"] = s[f"Phi_{letter}({shown})"]
+            names[f"Phi_{letter}(jomega)"] = s[f"Phi_{letter}(ω)"]
+    for index in "ijk":
+        names |= {f"varphi_{index}": s["φ"], f"phi_{index}": s["φ"], f"eta_{index}": s["η"], f"z_{index}": s["ζ"]}
+    names |= {f"{k}(s)": s[k] for k in "fpq"} | {"sigma_0": s["σ0"], "omega_0": s["ω0"]}
+    names["s_0"] = s["σ0"] + s["j"] * s["ω0"]
     for sub in ("z-bary", "z-haty"):
         names |= {f"Sigma_{sub}": s["Sigma"], f"sigma_{sub}^2": s["Sigma"]}
     return names

@@ -26,11 +26,12 @@ def outline() -> Outline:
     lecture = theory()
     t = copy(lecture, {k: s for k, s in lecture.symbols.items() if k not in ("P", "L*", "R_e^-1")})
     t.key, t.title = KEY, "Observer in continuous time"
-    plain = ("A", "B", "B_d", "C", "D_u", "D_d", "D_r", "L", *SIGNALS, *CLOSED, *INTENSITIES, *CORRELATIONS)
-    names: dict[str, Term] = {k: t.symbols[k] for k in (*plain, "P_e", "W", "N", "R_e", "Phi") if k != "xi"}
+    plain = ("A", "B", "B_d", "C", "D_u", "D_d", "D_r", "L", *SIGNALS, *CLOSED, *INTENSITIES)
+    names: dict[str, Term] = {k: t.symbols[k] for k in (*plain, "P_e", "W", "N", "R_e") if k != "xi"}
     names |= {"P": t.symbols["P_e"], "xi": t.symbols["xi"], "sigma_xi^2": t.symbols["sigma2"]}
-    names |= {"hat x": t.symbols["o"], "R_xixi": t.symbols["R_xixi"]}
-    usual = frozenset({*plain, "P_e", "W", "N", "R_e", "sigma2", "R_xixi"})
+    names |= {"hat x": t.symbols["o"]}
+    names |= {f"{k}()": t.symbols[k].at("t", "τ") for k in ("Phi", "R_xixi", *CORRELATIONS)}
+    usual = frozenset({*plain, *CORRELATIONS, "P_e", "W", "N", "R_e", "sigma2", "R_xixi"})
     return Outline(KEY, t.title, t, names, declare, usual)
 
 
