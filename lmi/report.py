@@ -91,7 +91,7 @@ def verdict_line(validation: Validation) -> str:
             )
             return f"disagree: tolerance {AGREEMENT:.0e}, {names}"
         case Verdict.UNCONFIRMED:
-            return "unconfirmed: no route independent of riccati gave a result accurate enough to confirm it"
+            return "unconfirmed: no route independent of riccati is accurate enough"
 
 
 def _table(validation: Validation) -> Table:
