@@ -14,9 +14,10 @@ from derive._version import __version__
 
 if TYPE_CHECKING:
     from derive.numeric.plant import Plant
+    from lmi.certification import Certified
     from lmi.validation import Validation
 
-__all__ = ["__version__", "validate"]
+__all__ = ["__version__", "certify", "validate"]
 
 
 def validate(
@@ -26,3 +27,12 @@ def validate(
     from lmi.validation import validate as run
 
     return run(plant, progress=progress)
+
+
+def certify(plant: "Plant | str | PathLike[str] | Mapping[str, Any]", gain: Any = None) -> "Certified":
+    """Prove bounds on a plant's optimal error covariance, and on a gain if one is given; see `lmi.certification`."""
+    from lmi.certification import certified
+    from lmi.certification_command import as_gain, as_plant
+
+    plant = as_plant(plant)
+    return certified(plant, None if gain is None else as_gain("gain", gain, plant))

@@ -22,7 +22,6 @@ stable and falls to P* >= P_lo. Each step is in docs/certificates.md.
 Nothing here comes from a solver, and only the standard library is used.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
@@ -33,7 +32,7 @@ from lmi.certificate_arithmetic import Exact, is_definite, is_semidefinite, symm
 if TYPE_CHECKING:
     from derive.numeric.plant import Plant
 
-__all__ = ["Bounds", "Certificate", "Check", "ExactPlant", "Interval", "exact_plant", "proved_unstable", "verify"]
+__all__ = ["Bounds", "Certificate", "Check", "ExactPlant", "Interval", "exact_plant", "verify"]
 
 WEIGHT_SHIFTS = (60, 40, 20)
 """Powers of two by which a shift of a weight is smaller than the weight, tried before one that surely suffices."""
@@ -229,24 +228,3 @@ def _shift(M: Exact) -> Fraction:
     identity = Exact.identity(M.shape[0])
     tried = (size / (1 << bits) for bits in WEIGHT_SHIFTS)
     return next((d for d in tried if is_semidefinite(M + identity * d)), size)
-
-
-def proved_unstable(plant: ExactPlant, gain: Exact, rate: Fraction, Y: Exact, v: Sequence[Fraction]) -> bool:
-    """Prove that A - L C has a mode with Re >= rate >= 0, in discrete time with modulus >= rate >= 1.
-
-    With loop = A - L C - rate I (discrete: (A - L C) / rate), loop Y + Y loop' < 0 (loop Y loop' - Y < 0) and
-    v'Y v <= 0 for some v: were the loop stable, Y would be the integral (sum) of positive definite terms, so Y > 0.
-    False proves nothing.
-
-    Args:
-        plant: the plant.
-        gain: L (n, l).
-        rate: of the mode.
-        Y: symmetric (n, n).
-        v: nonzero (n,).
-    """
-    if not Y.is_symmetric or not any(v) or rate < (0 if plant.is_continuous else 1):
-        return False
-    loop, column = plant.loop(gain), Exact.of([v]).T
-    loop = loop - Exact.identity(plant.n) * rate if plant.is_continuous else loop * (1 / rate)
-    return (column.T @ Y @ column)[0, 0] <= 0 and is_definite(-plant.drift(loop, Y))

@@ -1,4 +1,4 @@
-"""Exact arithmetic on rational matrices: products, definiteness, Routh's criterion. Standard library only.
+"""Exact arithmetic on rational matrices, and their definiteness. Standard library only.
 
 A matrix is a table of integers over one positive denominator. Definiteness is decided by fraction-free L D L'; a
 congruence that floating point suggests saves that work when its exact result is diagonally dominant.
@@ -9,18 +9,10 @@ congruence that floating point suggests saves that work when its exact result is
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from math import gcd, isfinite, lcm, ldexp, sqrt
+from math import isfinite, lcm, ldexp, sqrt
 from operator import mul
 
-__all__ = [
-    "Exact",
-    "TooLargeError",
-    "is_definite",
-    "is_hurwitz",
-    "is_semidefinite",
-    "moved_to_the_half_plane",
-    "symmetric_block",
-]
+__all__ = ["Exact", "TooLargeError", "is_definite", "is_semidefinite", "symmetric_block"]
 
 Table = list[list[int]]
 
@@ -222,43 +214,3 @@ def _inverse_factor(a: list[list[float]]) -> list[list[float]] | None:
         columns.append(column)
     rows = [[columns[j][i - j] if j <= i else 0.0 for j in range(n)] for i in range(n)]
     return rows if all(map(isfinite, (x for row in rows for x in row))) else None
-
-
-def is_hurwitz(polynomial: Sequence[int]) -> bool:
-    """Decide whether all roots of a polynomial, its highest coefficient first, have negative real parts.
-
-    By Routh's array with positive common factors of a row removed: all entries of its first column are positive. The
-    numbers of roots with Re > 0 are not counted; the first entry that is not positive decides.
-    """
-    sign = 1 if polynomial[0] > 0 else -1
-    above, row = ([sign * x for x in polynomial[start::2]] for start in (0, 1))
-    for _ in range(len(polynomial) - 1):
-        if not row or row[0] <= 0:
-            return False
-        padded = [*row[1:], *[0] * (len(above) - len(row))]
-        below = [row[0] * x - above[0] * y for x, y in zip(above[1:], padded, strict=False)]
-        common = gcd(*below) or 1
-        above, row = row, [x // common for x in below]
-    return polynomial[0] != 0
-
-
-def moved_to_the_half_plane(polynomial: Sequence[int]) -> list[int]:
-    """Return (s - 1)^n p((s + 1) / (s - 1)): its roots have Re s < 0 where those of p have |z| < 1.
-
-    When p(1) = 0 its highest coefficient is 0.
-    """
-    result, power = [0], [1]  # power: (s - 1)^k, in Horner's scheme for p(u / v) v^n with u = s + 1, v = s - 1
-    for coefficient in polynomial:
-        result = _sum(_times(result, 1), [coefficient * x for x in power])
-        power = _times(power, -1)
-    return result[1:]
-
-
-def _times(polynomial: Sequence[int], constant: int) -> list[int]:
-    """Return the polynomial times s + constant."""
-    return _sum([*polynomial, 0], [0, *(constant * x for x in polynomial)])
-
-
-def _sum(p: Sequence[int], q: Sequence[int]) -> list[int]:
-    n = max(len(p), len(q))
-    return [x + y for x, y in zip([*[0] * (n - len(p)), *p], [*[0] * (n - len(q)), *q], strict=True)]

@@ -201,4 +201,7 @@ def write_certificate(certificate: Certificate, path: str | os.PathLike[str]) ->
 
 def _text(data: Any) -> str:
     """Return JSON with one row of a matrix a line."""
-    return re.sub(r'",\n\s+"(?=-?[0-9])', '", "', json.dumps(data, indent=1)) + "\n"
+    text = json.dumps(data, indent=1)
+    text = re.sub(r'\[\s+"(?=-?[0-9])', '["', text)
+    text = re.sub(r'",\s+"(?=-?[0-9])', '", "', text)
+    return re.sub(r'"\s+\]', '"]', text) + "\n"

@@ -9,7 +9,7 @@ All three are rounded to a grid so fine that the inequalities survive. Nothing h
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb, arb_mat
@@ -25,7 +25,7 @@ from lmi.certificate_arithmetic import Exact
 from lmi.certification_boundary import without_boundary
 from lmi.certification_frame import Frame, Grid, binary_logarithm, sizes, unit_variances
 
-__all__ = ["NotCertifiedError", "certified"]
+__all__ = ["Certified", "NotCertifiedError", "certified"]
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -60,7 +60,14 @@ class NotCertifiedError(ArithmeticError):
     """No certificate was found; the message says what stood in the way."""
 
 
-def certified(plant: Plant, gain: Matrix | None = None) -> tuple[Certificate, Bounds]:
+class Certified(NamedTuple):
+    """A certificate that was verified, and what it proves."""
+
+    certificate: Certificate
+    bounds: Bounds
+
+
+def certified(plant: Plant, gain: Matrix | None = None) -> Certified:
     """Make a certificate of the plant's optimum, and of a gain if one is given; it is verified exactly.
 
     Args:
@@ -87,7 +94,7 @@ def certified(plant: Plant, gain: Matrix | None = None) -> tuple[Certificate, Bo
             for certificate in propose():
                 found, bounds = verify(certificate)
                 if bounds is not None:
-                    return certificate, bounds
+                    return Certified(certificate, bounds)
                 problem = ", ".join(check.statement for check in found if not check.holds)
         except (ArithmeticError, ValueError) as error:
             problem = " ".join(str(error).split())

@@ -1,4 +1,4 @@
-"""The command line of the convex programs: `lmi validate PLANT`."""
+"""The command line of the convex programs: `lmi validate PLANT`, `lmi certify FILE`."""
 
 import sys
 from typing import Any, NoReturn
@@ -71,6 +71,48 @@ def validate(plant: str, form: str) -> int:
 
         print_table(validation)
     return validation.verdict.exit_code
+
+
+@cli.command()
+@click.argument("file", required=False)
+@click.option("--plant", metavar="PLANT", help="The plant that FILE must be about, or that --gain is for.")
+@click.option(
+    "--gain", metavar="L.csv", help="A gain from anywhere: one line for each state, one column for each output."
+)
+@click.option("-o", "--output", metavar="FILE", help="Where to write the certificate of --gain.")
+def certify(file: str | None, plant: str | None, gain: str | None, output: str | None) -> int:
+    """Verify the certificate FILE in integers and print what it proves, or certify a gain for a plant.
+
+    Nothing in FILE is believed: the inequalities are decided and the bounds computed from its matrices. With --plant
+    and --gain instead of FILE, a bound on the gain is proved, or that it does not stabilise.
+
+    Exit codes: 0 proved, 1 rejected or proved not to stabilise, 2 bad input or usage, 3 nothing proved.
+    """
+    from derive.errors import InputError
+
+    if (file is None) == (gain is None) or (gain is not None and plant is None) or (file is not None and output):
+        raise click.UsageError(
+            "expected FILE [--plant PLANT] or --plant PLANT --gain L.csv [-o FILE]; try lmi certify -h"
+        )
+    try:
+        lines, code = _certified_file(file, plant) if file is not None else _certified_gain(plant, gain, output)
+    except InputError as error:
+        raise click.ClickException(str(error)) from None
+    click.echo("\n".join(lines))
+    return code
+
+
+def _certified_file(file: str, plant: str | None) -> tuple[list[str], int]:
+    from lmi.certificate_command import certify_file
+
+    return certify_file(file, plant)
+
+
+def _certified_gain(plant: str | None, gain: str | None, output: str | None) -> tuple[list[str], int]:
+    from lmi.certification_command import as_plant, certify_gain, read_gain
+
+    loaded = as_plant(plant or "")
+    return certify_gain(loaded, read_gain(gain or "", loaded), output)
 
 
 def main() -> NoReturn:
