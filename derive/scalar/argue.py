@@ -22,7 +22,9 @@ from derive.rules import Fact
 from derive.scalar.flint_ring import FlintRing
 from derive.scalar.ideal import Ideal
 from derive.scalar.instances import Instance, Instances
-from derive.scalar.proof import Factor, Leaf, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of
+from derive.scalar.proof import (
+    Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of,
+)  # fmt: skip
 from derive.scalar.ratio import Beyond, Numbers, Ratio
 from derive.scalar.real_closed import Budget, Fact as Claim, ask
 from derive.scalar.search import Remainders, contradiction, products
@@ -33,7 +35,7 @@ __all__ = ["Failed", "Prover", "Unknown"]
 DEPTH = 7  # of the tree of cases
 TRIED = 24  # instances at which a sign is looked at before it is proved
 ENOUGH = 6  # of those of the theory that satisfy the case
-PRODUCTS = 300  # of facts, in one certificate of sign
+PRODUCTS = 700  # of facts, in one certificate of sign
 FALSE = {"≥": "positive", ">": "nonnegative", "≠": "="}  # of -p, where the claim on p fails
 
 
@@ -43,6 +45,14 @@ class Failed(Exception):  # noqa: N818 - an answer
     def __init__(self, near: Mapping[str, Fraction] | None = None):
         super().__init__("false")
         self.near = near
+
+
+class Choose(Exception):  # noqa: N818 - a question
+    """A certificate needs to know which of some alternatives holds."""
+
+    def __init__(self, number: int):
+        super().__init__("alternatives")
+        self.number = number
 
 
 class Unknown(Exception):  # noqa: N818 - an answer
@@ -63,7 +73,7 @@ class Prover:
     budget: Budget = field(default_factory=Budget)
     systems: list[System] = field(default_factory=list[System])  # of the cases, as they end
 
-    def prove(self, cases: Sequence[Case] = ()) -> Tree | Leaf:
+    def prove(self, cases: Sequence[Case] = ()) -> Proof:
         """Return a proof.
 
         Raises:
@@ -74,15 +84,18 @@ class Prover:
         try:
             known = system(self.statement, self.ring, cases, self.without)
             self.systems.append(known)
-            return Leaf(impossible=True) if known.impossible else self._leaf(known)
+            return Leaf(impossible=True) if known.impossible else self._leaf(known, len(cases))
         except Split as split:
             if len(cases) >= DEPTH:
                 raise Unknown("too many cases") from None
             above = self.prove([*cases, ("nonnegative", split.poly)])
             return Tree(split.poly, above, self.prove([*cases, ("nonnegative", -split.poly)]))
+        except Choose as choose:
+            choice = [(kind, self.ring.poly(p)) for kind, p in self.systems[-1].alternatives[choose.number]]
+            return Either(choose.number, tuple(self.prove([*cases, case]) for case in choice))
 
-    def _leaf(self, known: System) -> Leaf:
-        search = _Search(self, known)
+    def _leaf(self, known: System, depth: int) -> Leaf:
+        search = _Search(self, known, depth)
         numbers = Numbers(self.ring, known.values, search)
         for relation, poly in claims_of(self.statement, numbers):
             for needed, p in needs_of(relation, poly, self.ring):
@@ -94,8 +107,8 @@ class Prover:
 class _Search:
     """Answers what a term needs, and keeps the reasons."""
 
-    def __init__(self, prover: Prover, known: System):
-        self.prover, self.known, self.ring = prover, known, prover.ring
+    def __init__(self, prover: Prover, known: System, depth: int):
+        self.prover, self.known, self.ring, self.depth = prover, known, prover.ring, depth
         self.steps: list[Step] = []
         self.instances = Instances(known, self.ring, prover.names)
         points = [i for i in prover.seeds if self.instances.allows(i)][:TRIED]
@@ -233,10 +246,16 @@ class _Search:
         if found.possible:
             raise Failed(found.near)
         used = tuple(name for name in found.core if name in facts)
-        if self.prover.certificates and set(found.core) <= {*used, NEGATION}:
-            sign = self._certificate(relation, plain, {n: facts[n] for n in used})
-            if sign is not None:
-                return Reason("sign", sign=sign, used=used)
+        if not self.prover.certificates:
+            return Reason("z3", used=used)
+        if relation == ">" and known_fact(self.known, poly, "≥"):
+            return Reason("apart", factors=(Factor(plain, 1, 1, self._by_z3("≠", poly)),))
+        sign = self._certificate(relation, plain, {n: facts[n] for n in used})
+        if sign is not None:
+            return Reason("sign", sign=sign, used=used)
+        choices = [i for i in range(len(self.known.alternatives)) if f"choice {i}" in found.core]
+        if choices and self.depth < DEPTH:
+            raise Choose(choices[0])
         return Reason("z3", used=used)
 
     def _certificate(self, relation: str, claim: Poly, chosen: Mapping[str, Claim]) -> Sign | None:
@@ -253,10 +272,11 @@ class _Search:
         while len(ideal.rules) < 12 and ideal.grow():
             pass
         remainders = Remainders(ideal, facts)
-        for degree in (1, 2, 3, 4):
-            if comb(len(facts) + degree, degree) > PRODUCTS:
-                return None
-            found = contradiction(list(products(facts, (), degree)), remainders)
+        squares = [self.ring.poly(self.ring.letter(n)) for n in order if not n.startswith("√")]
+        for degree, used in ((1, squares), (2, squares), (3, []), (3, squares), (4, [])):
+            if comb(len(facts) + degree, degree) * (1 + len(used)) > PRODUCTS:
+                continue
+            found = contradiction(list(products(facts, used, degree)), remainders)
             if found:
                 return _sign(claim, relation, found, facts, ideal)
         return None

@@ -25,7 +25,7 @@ from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.example import NumberExample
 from derive.scalar.flint_ring import FlintRing, fraction, rational
 from derive.scalar.instances import Instance, Instances
-from derive.scalar.proof import Leaf, Reason, Step, Tree, Turned, accept, leaves
+from derive.scalar.proof import Leaf, Proof, Reason, Step, Turned, accept, leaves
 from derive.scalar.proof_file import proof_to_json
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
@@ -176,7 +176,7 @@ def _open(work: Work, why: str) -> Answer:
     return Answer(Verdict.supported, "enclosures", notes=(note, why))
 
 
-def _proved(work: Work, prover: Prover, tree: Tree | Leaf, explain: bool) -> Answer:
+def _proved(work: Work, prover: Prover, tree: Proof, explain: bool) -> Answer:
     certified = all(_certified(leaf) for leaf in leaves(tree))
     if certified:
         accept(work.statement, tree)
@@ -193,7 +193,7 @@ def _certified(leaf: Leaf) -> bool:
     return all(r.certified() for r in reasons if isinstance(r, Reason))
 
 
-def _used(work: Work, prover: Prover, tree: Tree | Leaf) -> set[str]:
+def _used(work: Work, prover: Prover, tree: Proof) -> set[str]:
     """Return the declarations behind the facts that were consulted and the letters that stand for others."""
     facts = {name for leaf in leaves(tree) for step in leaf.steps for name in _facts(step)}
     found = set[str]()

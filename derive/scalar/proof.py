@@ -20,7 +20,7 @@ from derive.scalar.ratio import Beyond, KernelRing, Numbers, Ratio
 from derive.scalar.system import Case, Split, System, proportional, sign_of, system
 
 __all__ = [
-    "ANSWERS", "Factor", "Leaf", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of", "known_fact",
+    "ANSWERS", "Either", "Factor", "Leaf", "Proof", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of", "known_fact",
     "leaves", "needs_of",
 ]  # fmt: skip
 
@@ -39,9 +39,12 @@ class Factor:
 
 @dataclass(frozen=True)
 class Reason:
-    """Why a polynomial is ≥ 0, > 0 or ≠ 0: by a fact or at sight, as a product, or by a certificate of sign."""
+    """Why a polynomial is ≥ 0, > 0 or ≠ 0: by a fact or at sight, as a product, or by a certificate of sign.
 
-    rule: str  # "known", "product", "sign", "z3"
+    "apart" says of p > 0 that p >= 0 is known and p ≠ 0, for which ``factors`` has the reason.
+    """
+
+    rule: str  # "known", "product", "apart", "sign", "z3"
     number: Fraction = Fraction(1)
     factors: tuple[Factor, ...] = ()
     sign: Sign | None = None
@@ -84,17 +87,30 @@ class Tree:
     """Either p >= 0 or -p >= 0, and a tree for each."""
 
     poly: Poly
-    above: Tree | Leaf
-    below: Tree | Leaf
+    above: Proof
+    below: Proof
 
 
-def leaves(tree: Tree | Leaf) -> Iterator[Leaf]:
+@dataclass(frozen=True)
+class Either:
+    """One of some alternatives holds, and there is a proof for each."""
+
+    number: int
+    proofs: tuple[Proof, ...]
+
+
+Proof = Tree | Either | Leaf
+
+
+def leaves(proof: Proof) -> Iterator[Leaf]:
     """Iterate over the cases of a proof."""
-    if isinstance(tree, Leaf):
-        yield tree
-    else:
-        yield from leaves(tree.above)
-        yield from leaves(tree.below)
+    match proof:
+        case Leaf():
+            yield proof
+        case Tree(_, above, below):
+            yield from (*leaves(above), *leaves(below))
+        case Either(_, proofs):
+            yield from (leaf for p in proofs for leaf in leaves(p))
 
 
 # ---------------------------------------------------------------------------------------------- what is needed
@@ -202,6 +218,11 @@ class _Replay:
                     raise Rejected("the sign is not known at sight")
             case "product":
                 self._product(reason, relation, poly)
+            case "apart" if relation == ">" and len(reason.factors) == 1:
+                (factor,) = reason.factors
+                if factor.reason is None or not known_fact(self.known, poly, "≥"):
+                    raise Rejected("it is not known that the number is not negative")
+                self._check(factor.reason, "≠", poly)
             case "sign" if reason.sign is not None:
                 facts = {n: Fact(kind, ((p,),)) for n, (kind, p) in self.known.facts.items()}
                 names = {x for p in (poly, *(f.matrix[0][0] for f in facts.values())) for m, _ in p.terms for x in m}
@@ -233,7 +254,7 @@ class _Replay:
             raise Rejected("the product is another, or of the other sign")
 
 
-def accept(statement: Statement, tree: Tree | Leaf, cases: Sequence[Case] = ()) -> None:
+def accept(statement: Statement, tree: Proof, cases: Sequence[Case] = ()) -> None:
     """Replay a proof of all that a statement says, its definedness included; or raise Rejected."""
     if len(cases) > 12:
         raise Rejected("too many cases")
@@ -243,6 +264,9 @@ def accept(statement: Statement, tree: Tree | Leaf, cases: Sequence[Case] = ()) 
         return
     try:
         known = system(statement, KernelRing(), cases)
+        if isinstance(tree, Either):
+            _each(statement, tree, known, cases)
+            return
         if tree.impossible:
             if not known.impossible:
                 raise Rejected("the case is possible")
@@ -257,3 +281,13 @@ def accept(statement: Statement, tree: Tree | Leaf, cases: Sequence[Case] = ()) 
         raise Rejected("a sign in the hypotheses is not known") from None
     except Beyond as error:
         raise Rejected(str(error)) from None
+
+
+def _each(statement: Statement, tree: Either, known: System, cases: Sequence[Case]) -> None:
+    if not 0 <= tree.number < len(known.alternatives):
+        raise Rejected("there are no such alternatives")
+    choice = known.alternatives[tree.number]
+    if len(choice) != len(tree.proofs):
+        raise Rejected("an alternative without proof")
+    for case, proof in zip(choice, tree.proofs, strict=True):
+        accept(statement, proof, [*cases, case])

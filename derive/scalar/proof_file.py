@@ -9,7 +9,7 @@ from derive.errors import InputError
 from derive.kernel import ANY, Poly
 from derive.kernel import Term as Addend
 from derive.real import Sign, SignProduct
-from derive.scalar.proof import Factor, Leaf, Reason, Square, Step, Tree, Turned
+from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned
 from derive.serialise import RATIONAL
 
 __all__ = ["proof_from_json", "proof_to_json"]
@@ -18,10 +18,12 @@ DEPTH, LENGTH, SIZE = 16, 200, 5_000  # nesting, letters of a product, entries o
 
 
 # ---------------------------------------------------------------------------------------------- writing
-def proof_to_json(tree: Tree | Leaf) -> dict[str, Any]:
+def proof_to_json(tree: Proof) -> dict[str, Any]:
     """Return a proof as nested dicts and lists."""
     if isinstance(tree, Tree):
         return {"case": _poly(tree.poly), "above": proof_to_json(tree.above), "below": proof_to_json(tree.below)}
+    if isinstance(tree, Either):
+        return {"alternatives": tree.number, "proofs": [proof_to_json(p) for p in tree.proofs]}
     return {"impossible": True} if tree.impossible else {"steps": [_step(s) for s in tree.steps]}
 
 
@@ -41,6 +43,8 @@ def _step(step: Step) -> dict[str, Any]:
 
 def _reason(reason: Reason) -> dict[str, Any]:
     found: dict[str, Any] = {"rule": reason.rule}
+    if reason.rule == "apart":
+        found["factors"] = [_factor(f) for f in reason.factors]
     if reason.rule == "product":
         found |= {"number": str(reason.number), "factors": [_factor(f) for f in reason.factors]}
     if reason.sign is not None:
@@ -59,7 +63,7 @@ def _factor(factor: Factor) -> dict[str, Any]:
 
 
 # ---------------------------------------------------------------------------------------------- reading
-def proof_from_json(data: Any, depth: int = 0) -> Tree | Leaf:
+def proof_from_json(data: Any, depth: int = 0) -> Proof:
     """Read a proof.
 
     Raises:
@@ -70,6 +74,10 @@ def proof_from_json(data: Any, depth: int = 0) -> Tree | Leaf:
         _keys(item, "case", "above", "below")
         below = (proof_from_json(item[k], depth + 1) for k in ("above", "below"))
         return Tree(_read_poly(item["case"]), *below)
+    if "alternatives" in item:
+        _keys(item, "alternatives", "proofs")
+        proofs = tuple(proof_from_json(p, depth + 1) for p in _list(item["proofs"], DEPTH))
+        return Either(_whole(item["alternatives"]), proofs)
     if "impossible" in item:
         _keys(item, "impossible")
         return Leaf(impossible=True)
@@ -98,6 +106,9 @@ def _read_reason(data: Any, depth: int) -> Reason:
             _keys(item, "rule", "number", "factors")
             factors = tuple(_read_factor(f, depth + 1) for f in _list(item["factors"]))
             return Reason("product", _number(item["number"]), factors)
+        case "apart":
+            _keys(item, "rule", "factors")
+            return Reason("apart", factors=tuple(_read_factor(f, depth + 1) for f in _list(item["factors"], 1, 1)))
         case "sign":
             _keys(item, "rule", "relation", "claim", "products", "terms")
             products = tuple(_read_product(p) for p in _list(item["products"]))

@@ -28,6 +28,7 @@ ONE = Number(Fraction(1))
 ROOTS = tuple(f"√{i}" for i in range(1, 9))  # letters for roots
 COMPLEX = ("s", "z", "j")
 
+Choice = tuple[tuple[str, Any], ...]  # kinds of fact and polynomials, of which one holds
 Case = tuple[str, Poly]  # "=" or a kind of fact, and the polynomial in letters
 
 
@@ -64,7 +65,7 @@ class System:
     relations: dict[str, Any] = field(default_factory=dict[str, Any])
     origins: dict[str, str] = field(default_factory=dict[str, str])
     solved: dict[str, str] = field(default_factory=dict[str, str])  # letter -> declaration that gives it
-    alternatives: list[tuple[tuple[str, Any], ...]] = field(default_factory=list[tuple[tuple[str, Any], ...]])
+    alternatives: list[Choice] = field(default_factory=list[Choice])
     signs: dict[str, tuple[int, bool]] = field(default_factory=dict[str, tuple[int, bool]])  # of letters; strict
     roots: list[tuple[Any, str]] = field(default_factory=list[tuple[Any, str]])
     impossible: str = ""
@@ -157,6 +158,22 @@ class System:
         for name, (kind, poly) in facts.items():
             self.fact(name, kind, self._rewritten(poly, sign=True), self.origins[name])
         self.roots = [(self._rewritten(s), name) for s, name in self.roots]
+        self.alternatives = [c for choice in self.alternatives if (c := self._open(choice))]
+
+    def _open(self, choice: Choice) -> Choice | None:
+        """Drop alternatives that are false at sight; the last that is left is a fact."""
+        left = tuple(c for c in choice if not self._false(*c))
+        if len(left) == 1:
+            self.fact(f"detectable {len(self.facts)}", *left[0], "detectable")
+        elif not left:
+            self.impossible = self.impossible or "detectable"
+        return left if len(left) > 1 else None
+
+    def _false(self, kind: str, poly: Any) -> bool:
+        found = self.sight(poly)
+        if not self.ring.poly(poly).terms:
+            return kind != "nonnegative"
+        return kind == "positive" and found is not None and found[0] < 0
 
     def _rewritten(self, poly: Any, sign: bool = False) -> Any:
         if not set(self.values) & {x for m, _ in self.ring.poly(poly).terms for x in m}:
@@ -425,7 +442,7 @@ def _determinant(rows: tuple[tuple[Term, ...], ...], i: tuple[int, ...], j: tupl
     return Sum(tuple(Neg(p) if n % 2 else p for n, p in enumerate(parts)))
 
 
-def _detectable(item: DeclaredFact, found: System) -> list[tuple[tuple[str, Any], ...]]:
+def _detectable(item: DeclaredFact, found: System) -> list[Choice]:
     """Return the alternatives of X - G H with the gain G: the output sees the state, H ≠ 0, or X is stable."""
     match item.matrix:
         case Sum((X, Neg(Product((G, H))))):
