@@ -111,20 +111,28 @@ def settled(equation: Equation, reader: Reader) -> Equation:
 
 
 def _moving(displays: Sequence[s.Display], reader: Reader) -> frozenset[str]:
-    """Return the names that stand for functions of time: where \\dot P occurs, P and K mean P(t) and K(t)."""
-    names = reader.theory.names
-    heads = {id(n.head) for d in displays for n in s.walk(d) if isinstance(n, s.Applied)}
-    for display in displays:
-        for node in s.walk(display):
-            rate = node.body if isinstance(node, s.Differentiated) else node
-            moves = rate is not node or (isinstance(node, s.Name) and derivatives(node) > 0)
-            if (
-                moves
-                and isinstance(rate, s.Name)
-                and id(rate) not in heads
-                and spell(rate, reader.notation) + "()" in names
-            ):
-                return frozenset(name.removesuffix("()") for name in names if name.endswith("()"))
+    """Return the names that stand for functions of time: where \\dot P or a signal occurs, P and K mean P(t) and K(t).
+
+    In a limit of time they are steady.
+    """
+    names, theory = reader.theory.names, reader.theory.theory
+    found = frozenset(name.removesuffix("()") for name in names if name.endswith("()") and "_" not in name)
+    if found.isdisjoint("PKS"):
+        return frozenset()
+    nodes = [n for d in displays for n in s.walk(d)]
+    if any(isinstance(n, s.Called) and n.function == "lim" for n in nodes):
+        return frozenset()
+    applied = {id(n.head) for n in nodes if isinstance(n, s.Applied)}
+    for node in nodes:
+        rate = node.body if isinstance(node, s.Differentiated) else node
+        if not isinstance(rate, s.Name) or id(rate) in applied:
+            continue
+        spelled = spell(rate, reader.notation)
+        known = names.get(spelled)
+        moves = rate is not node or derivatives(rate) > 0
+        signal = isinstance(known, Symbol) and known.name in theory.random | theory.uncentred
+        if signal or (moves and spelled in found):
+            return found
     return frozenset()
 
 

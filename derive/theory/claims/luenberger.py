@@ -162,6 +162,7 @@ def _steady(d: Draft, cross: bool) -> None:
         L_f, after = d.of("L_f", "P+")
         d.define("L_f", L_f, P * C.T * sigma.inv)
         d.define("P+", after, P - P * C.T * sigma.inv * C * P)
+        d.assume("P+ >= 0", after, "⪰", by=(LECTURE, "Joseph form"))
 
 
 def _transient(d: Draft, letter: str, numbers: dict[int, set[str]], noise: Noise) -> None:
@@ -200,6 +201,7 @@ def _covariance(d: Draft, index: str, stems: set[str], noise: Noise, *, reached:
         d.define(f"filter gain at {index}", L_f, P * C.T * sigma.inv)
         right = P - P * C.T * sigma.inv * C * P
         d.assume(f"filtered covariance at {index}", after, "=", right, by=(LECTURE, "filtered covariance"))
+        d.assume(f"{after.name} >= 0", after, "⪰", by=(LECTURE, "filtered covariance"))
 
 
 def _step(d: Draft, before: str, after: str, noise: Noise) -> None:
