@@ -16,7 +16,7 @@ from derive.display import Displayed
 from derive.functions import Definite, Limit, Rate, Start, single_of
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
-from derive.real import NEGATION, TIME, Sign
+from derive.real import COMPLEX, NEGATION, TIME, Sign
 from derive.roots import check_positive, determinant_claim
 from derive.rules import (
     Comparison,
@@ -29,7 +29,7 @@ from derive.rules import (
     variation,
 )
 from derive.scalars import RULES, check_scalar, scalar_claims
-from derive.spectral import Entry
+from derive.spectral import At, Entry
 from derive.terms import (
     Dot,
     Equation,
@@ -62,6 +62,7 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "chain": ("links",),
     **dict.fromkeys((*RULES, "positive"), ("sign", "links")),
 }  # the parts of a proof that a rule replays, where they are not the identities
+FUNCTIONS = ("modulus", "mirrored", "same roots", "trace of roots")  # rules with links that hold for every s
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
 
@@ -223,10 +224,14 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
 
 
 def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> None:
-    """Reject a limit, derivative or integral in a variable that a hypothesis holds at some value."""
+    """Reject a limit, derivative or integral in a variable that a hypothesis holds at some value.
+
+    The same for s where a function of s is read elsewhere, or a link is an identity between functions of s.
+    """
     nodes = [n for side in (step.statement.lhs, step.statement.rhs) for n in walk(side)]
     moving = {n.symbol.name for n in nodes if isinstance(n, (Limit, Rate, Start, Definite))}
     moving |= {TIME} if step.rule == "same rate" else set()
+    moving |= {COMPLEX} if step.rule in FUNCTIONS or any(isinstance(n, At) for n in nodes) else set()
     for name in _below({*step.uses, *step.proof.relations()}, reading, earlier) if moving else ():
         if moving & reading.real.fixed.get(name, frozenset()):
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")

@@ -502,11 +502,12 @@ def _made_of(poly: Poly, known: Callable[[str], bool | None], reading: Reading) 
 def _meanings(reading: Reading) -> Iterator[tuple[str, Poly]]:
     """Iterate over the letters that may be complex, with what they are the inverse of, or what defines them."""
     yield from ((letter, poly) for poly, letter in reading.inverses.items())
+    others = reading.context.complex - _inverse_names(reading)
     for poly in reading.context.relations.values():
-        single = [w[0] for m, w in poly.terms if not m and len(w) == 1 and w[0] in reading.context.complex]
+        single = [w[0] for m, w in poly.terms if not m and len(w) == 1 and w[0] in others]
         if len(single) == 1:
             rest = {(m, w): c for (m, w), c in poly.terms.items() if w != (single[0],)}
-            if not any(parts(a)[0] in reading.context.complex - _inverse_names(reading) for _, w in rest for a in w):
+            if not any(parts(a)[0] in others for _, w in rest for a in w):
                 yield single[0], Poly(rest, poly.rows, poly.cols)
 
 

@@ -67,6 +67,7 @@ RULES: dict[Rule, str] = {
     "conjugate": "conjugate roots",
     "same roots": "equal roots",
     "modulus": "distances to the roots",
+    "mirrored": "conjugates on the circle",
     "trace of roots": "trace",
     "determinant": "determinant of a product",
     "exchange": "determinant",

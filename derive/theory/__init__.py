@@ -21,7 +21,7 @@ LECTURES = {
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
     "spectrum": "derive.theory.spectrum",
-    "spectrum-dt": "derive.theory.spectrum_circle",
+    "spectrum-dt": "derive.theory.spectrum_dt",
     "duality": "derive.theory.duality",
 }
 OWN_PAGE = frozenset({"kalman-bucy", "scalar", "spectrum", "spectrum-dt"})  # each has a page beside the tour's
@@ -32,7 +32,7 @@ THEORIES = {
     "kalman-bucy": "derive.theory.kalman_bucy",
     "scalar": "derive.theory.scalar",
     "spectrum": "derive.theory.spectrum",
-    "spectrum-dt": "derive.theory.spectrum_circle",
+    "spectrum-dt": "derive.theory.spectrum_dt",
     "duality": "derive.theory.duality",
     "lqr-dt": "derive.theory.regulator:discrete",
     "lqr-ct": "derive.theory.regulator:continuous",

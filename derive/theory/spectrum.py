@@ -15,7 +15,6 @@ from derive.theory import (
     spectrum_bode,
     spectrum_bounds,
     spectrum_cross,
-    spectrum_discrete,
     spectrum_filter,
     spectrum_half_plane,
     spectrum_jensen,
@@ -39,7 +38,6 @@ PARTS = (
     spectrum_bounds,
     spectrum_special,
     spectrum_cross,
-    spectrum_discrete,
 )
 
 

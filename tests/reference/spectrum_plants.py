@@ -10,7 +10,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import block_diag, solve_continuous_are, solve_continuous_lyapunov, solve_discrete_are, sqrtm
+from scipy.linalg import block_diag, solve_continuous_are, solve_continuous_lyapunov, sqrtm
 
 from derive.context import Declared, DeclaredFact, Theory
 from derive.terms import Symbol
@@ -118,7 +118,6 @@ def _open_loop(plant: Plant, assumed: set[str], rng: np.random.Generator) -> dic
     N = np.zeros((m, outputs)) if {"W = 0", "W = BB'"} & assumed else N
     found = {"A": A, "B": B, "C": C, "W": W, "V": V, "N": N, "V^1/2": np.real(sqrtm(V))}
     found |= _filter(found, assumed, np.zeros((m, outputs)), "", rng) | _filter(found, assumed, N, "_N", rng)
-    found |= _predictor(found, assumed, rng)
     error = C @ found["P"] @ C.T
     found["Sigma"] = error if "output error covariance" in assumed else _positive(outputs, rng)
     return found
@@ -141,15 +140,6 @@ def _filter(letters: dict[str, np.ndarray], assumed: set[str], N: np.ndarray, su
         K = rng.standard_normal(K.shape)
         K -= seen @ K if "CK = 0" in assumed else 0.0
     return {"P" + sub: P, "K" + sub: K}
-
-
-def _predictor(letters: dict[str, np.ndarray], assumed: set[str], rng: np.random.Generator) -> dict[str, np.ndarray]:
-    """Return the letters of discrete time: the same plant, with W and another V as covariances."""
-    A, C, Q, R = letters["A"], letters["C"], letters["W"], _positive(len(letters["C"]), rng)
-    P = solve_discrete_are(A.T, C.T, Q, R) if "discrete Riccati equation" in assumed else _positive(len(A), rng)
-    K = A @ P @ C.T @ np.linalg.inv(C @ P @ C.T + R)
-    K = K if "discrete gain" in assumed else rng.standard_normal(K.shape)
-    return {"Q_d": Q, "R_d": R, "P_d": P, "K_d": K}
 
 
 def _riccati(A: np.ndarray, C: np.ndarray, W: np.ndarray, V: np.ndarray, N: np.ndarray) -> np.ndarray:

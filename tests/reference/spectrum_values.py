@@ -15,13 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from derive.functions import Abs, Arctan, Definite, Infinity, Limit, Log, Max, Power, Quotient, Rate, Root
+from derive.functions import Abs, Arctan, Definite, Exp, Infinity, Limit, Log, Max, Power, Quotient, Rate, Root
 from derive.spectral import (
     At,
     Conjugate,
     Det,
     Distance,
     Entry,
+    Growth,
     ImaginaryPart,
     Modulus,
     RealPart,
@@ -52,6 +53,7 @@ class World:
     sizes: Mapping[str, int]
     definitions: Mapping[str, Term]
     known: dict[Any, Values] = field(default_factory=dict, compare=False)
+    imaged: tuple[str, ...] = ()  # families whose images under (z - 1)/(z + 1) an integrand is singular at
 
     @cached_property
     def radius(self) -> float:
@@ -64,11 +66,17 @@ class World:
         found = sorted(abs(z.imag) for z in self.points)
         return [b for a, b in zip([0.0, *found], found, strict=False) if b - a > 1e-9]
 
+    @cached_property
+    def angles(self) -> list[float]:
+        """The angles of the roots, where an integrand may have a peak on the unit circle."""
+        found = sorted(abs(np.angle(z)) for family in self.roots.values() for z in family)
+        return [b for a, b in zip([0.0, *found], found, strict=False) if b - a > 1e-9]
+
     @property
     def points(self) -> list[complex]:
         """The roots, one more and a point, and the images of the circle's points in the half plane."""
         roots = [complex(z) for family in self.roots.values() for z in family]
-        images = [(z - 1.0) / (z + 1.0) for z in map(complex, self.roots["λ"]) if abs(z + 1.0) > 1e-9]
+        images = [(z - 1.0) / (z + 1.0) for name in self.imaged for z in self.roots[name] if abs(z + 1.0) > 1e-9]
         return [*roots, *images, *(complex(self.numbers[a].real, self.numbers[b].real) for a, b in POINTS)]
 
 
@@ -154,6 +162,8 @@ class Place:
                 return np.maximum(0.0, _real(self.number(body)))
             case Root(body):
                 return np.sqrt(_real(self.number(body)))
+            case Exp(body):
+                return np.exp(self.number(body))
             case Arctan(body):
                 return np.arctan(_real(self.number(body)))
             case Limit() | Definite() | Rate():
@@ -182,6 +192,9 @@ class Place:
                 return self._root(root).real
             case ImaginaryPart(root):
                 return self._root(root).imag
+            case Growth(root):
+                size = abs(self._root(root))
+                return math.log(size) if size > 1.0 else 0.0
             case Distance(point, root):
                 return np.abs(self.number(point) - self._root(root)) ** 2
             case Total(body, index, count):
@@ -247,7 +260,9 @@ class Place:
                 return function(self.number(point) + 1e-13)
             case Definite(_, _, lower, upper):
                 size = max([self.world.radius, *(abs(x) for x in self.variables.values() if np.ndim(x) == 0)])
-                return integral(function, self._bound(lower), self._bound(upper), self.world.breaks, size)
+                low, high = self._bound(lower), self._bound(upper)
+                breaks = self.world.angles if (low, high) == (-math.pi, math.pi) else self.world.breaks
+                return integral(function, low, high, breaks, size)
 
     def _bound(self, term: Term) -> float:
         match term:
@@ -424,6 +439,8 @@ def _free(term: Term, bound: frozenset[str], world: World) -> Iterator[tuple[str
             bound = bound | {index.glyph.letter}
         case Symbol(scalar=True, glyph=glyph, name=name) if name in world.roots and glyph.sub not in bound:
             yield glyph.sub, name
+        case Symbol(scalar=True, name=name) if name in world.definitions:
+            yield from _free(world.definitions[name], bound, world)
         case _:
             pass
     for child in term.children():

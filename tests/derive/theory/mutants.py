@@ -16,7 +16,7 @@ from derive.derivation import Outcome, Step, check, claims, learn, order_claim
 from derive.functions import Abs, Definite, Infinity, Limit, Max, value
 from derive.kernel import Rejected
 from derive.scalars import RULES
-from derive.spectral import Conjugate, Distance, ImaginaryPart, Modulus, RealPart, Roots, Total
+from derive.spectral import Conjugate, Distance, Growth, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Block, Equation, Neg, Number, Product, Reading, Sum, Symbol, Term, Transpose, Zero
 from derive.theory import lecture
 
@@ -76,7 +76,9 @@ def _spectral(term: Term, families: Sequence[Symbol]) -> Iterator[Term]:
     match term:
         case Max(body) | Abs(body):
             yield (Abs if isinstance(term, Max) else Max)(body)
-        case RealPart(root) | ImaginaryPart(root) | Conjugate(root) | Roots(_, root) | Distance(_, Symbol() as root):
+        case Growth(root) | RealPart(root) | ImaginaryPart(root) | Conjugate(root) | Roots(_, root):
+            yield from (replace(term, root=other) for other in _next(root, [r for r in families if r.glyph.sub]))
+        case Distance(_, Symbol() as root):
             yield from (replace(term, root=other) for other in _next(root, [r for r in families if r.glyph.sub]))
         case _:
             pass

@@ -21,7 +21,7 @@ from derive.real import scalar
 from derive.roots import check_instance, check_modulus
 from derive.spectral import At, Det, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero
-from derive.theory import spectrum, spectrum_circle, spectrum_half_plane, spectrum_poisson
+from derive.theory import spectrum, spectrum_dt, spectrum_half_plane, spectrum_poisson
 from derive.theory.spectrum_roots import on_axis
 from tests.derive.theory.mutants import mutants
 
@@ -34,7 +34,7 @@ MIRROR = {"σ0": 0.7, "ω0": 0.4, "r": 0.7, "α": -0.7, "β": 0.4}
 # ------------------------------------------------------------------------------------------------ numbers
 def definition(name: str) -> Term:
     """Return what a symbol stands for, in the theory of either lecture."""
-    return next(t.statement(name).rhs for t in (spectrum.theory(), spectrum_circle.theory()) if name in t.declared)
+    return next(t.statement(name).rhs for t in (spectrum.theory(), spectrum_dt.theory()) if name in t.declared)
 
 
 def number(term: Term, at: dict[str, float], roots: dict[str, np.ndarray], i: int = 0) -> float:
