@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import combinations_with_replacement
 from math import comb, isqrt
 from time import monotonic
 from typing import Any
@@ -35,6 +36,7 @@ __all__ = ["Failed", "Prover", "Unknown"]
 DEPTH = 7  # of the tree of cases
 TRIED = 24  # instances at which a sign is looked at before it is proved
 ENOUGH = 6  # of those of the theory that satisfy the case
+FEW = 60  # points at which instances of a case are looked for
 PRODUCTS = 700  # of facts, in one certificate of sign
 FALSE = {"≥": "positive", ">": "nonnegative", "≠": "="}  # of -p, where the claim on p fails
 
@@ -112,7 +114,7 @@ class _Search:
         self.steps: list[Step] = []
         self.instances = Instances(known, self.ring, prover.names)
         points = [i for i in prover.seeds if self.instances.allows(i)][:TRIED]
-        self.points = points if len(points) >= ENOUGH else self.instances.first(ENOUGH)
+        self.points = points if len(points) >= ENOUGH else self.instances.first(ENOUGH, FEW)
 
     # ------------------------------------------------------------------------------------- answers
     def nonzero(self, poly: Any) -> None:
@@ -273,7 +275,8 @@ class _Search:
             pass
         remainders = Remainders(ideal, facts)
         squares = [self.ring.poly(self.ring.letter(n)) for n in order if not n.startswith("√")]
-        for degree, used in ((1, squares), (2, squares), (3, []), (3, squares), (4, [])):
+        pairs = [*squares, *(a * b for a, b in combinations_with_replacement(squares, 2))]
+        for degree, used in ((1, squares), (2, squares), (3, []), (3, squares), (4, []), (3, pairs)):
             if comb(len(facts) + degree, degree) * (1 + len(used)) > PRODUCTS:
                 continue
             found = contradiction(list(products(facts, used, degree)), remainders)

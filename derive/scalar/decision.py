@@ -8,7 +8,7 @@ at which the claim was evaluated, or undecided.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import islice
 from time import monotonic
@@ -17,7 +17,7 @@ from typing import Any
 from flint import fmpq
 
 from derive.claim import Answer, Counterexample, Verdict
-from derive.context import Declared, DeclaredInverse
+from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.errors import InputError
 from derive.interpret.statement import Statement
 from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
@@ -25,16 +25,19 @@ from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.example import NumberExample
 from derive.scalar.flint_ring import FlintRing, fraction, rational
 from derive.scalar.instances import Instance, Instances
-from derive.scalar.proof import Leaf, Proof, Reason, Step, Turned, accept, leaves
-from derive.scalar.proof_file import proof_to_json
+from derive.scalar.proof import Proof, accept, leaves
+from derive.scalar.proof_file import certificate
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
+from derive.scalar.reasons import bearing_names, letters_of, used_names
 from derive.scalar.system import ROOTS, Split, System, names_in, system
-from derive.terms import Equation, Symbol, walk
+from derive.terms import Equation, Symbol
 
 __all__ = ["decide_scalar"]
 
 FIRST, MORE = 60, 600  # instances at which a claim is evaluated before and after a proof is tried
+POINTS = 1_000  # points at which the first instances are looked for
+FEW = 200  # points at which instances are looked for before z3 is asked whether there are any
 
 
 @dataclass(frozen=True)
@@ -119,9 +122,9 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
     try:
         work = Work.of(statement, deadline)
     except (Beyond, Split) as error:
-        return Answer(Verdict.undecided, notes=(str(error),))
+        return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
     _satisfiable(work)
-    found = work.simplest(work.failures(work.instances.first(FIRST)))
+    found = work.simplest(work.failures(work.instances.first(FIRST, POINTS)))
     if found is not None:
         return _refuted(work, found)
     return _proved_or_not(work, explain)
@@ -131,7 +134,7 @@ def _satisfiable(work: Work) -> None:
     """Make sure that some numbers satisfy all hypotheses."""
     if work.known.impossible:
         raise InputError(f"assume: expected what the theory allows, got a contradiction with {work.known.impossible}")
-    if not work.instances.first(1) and _possible(work, Budget()) is False:
+    if not work.instances.first(1, FEW) and _possible(work, Budget()) is False:
         raise InputError("assume: expected what the theory allows, got a contradiction; leave one assumption out")
 
 
@@ -141,7 +144,7 @@ def _possible(work: Work, budget: Budget) -> bool | None:
 
 # ---------------------------------------------------------------------------------------------- proofs
 def _proved_or_not(work: Work, explain: bool) -> Answer:
-    prover = Prover(work.statement, work.ring, work.names, work.deadline, seeds=work.instances.first(FIRST))
+    prover = Prover(work.statement, work.ring, work.names, work.deadline, seeds=work.instances.first(FIRST, POINTS))
     try:
         tree = prover.prove()
     except Failed as failed:
@@ -164,68 +167,45 @@ def _searched(work: Work, why: str) -> Answer:
 def _open(work: Work, why: str) -> Answer:
     """Answer with how often the claim was enclosed, if it could be evaluated."""
     enclosed = 0
-    for instance in work.instances.first(FIRST):
+    for instance in work.instances.first(FIRST, POINTS):
         try:
             answers = [holds(e, instance.values)[0] for e in work.statement.equations]
         except (Undefined, Unsure, Beyond):
             continue
         enclosed += False not in answers
     if not enclosed:
-        return Answer(Verdict.undecided, notes=(why,))
+        return Answer(Verdict.undecided, assumed=work.statement.assumed, notes=(why,))
     note = f"it holds, as far as enclosures of {200} bits can tell, at {enclosed} instances"
-    return Answer(Verdict.supported, "enclosures", notes=(note, why))
+    return Answer(Verdict.supported, "enclosures", assumed=work.statement.assumed, notes=(note, why))
 
 
 def _proved(work: Work, prover: Prover, tree: Proof, explain: bool) -> Answer:
-    certified = all(_certified(leaf) for leaf in leaves(tree))
+    certified = all(leaf.certified() for leaf in leaves(tree))
     if certified:
         accept(work.statement, tree)
-    used = _used(work, prover, tree)
-    bearing = [o for o in dict.fromkeys((*work.known.origins.values(), *work.statement.assumed)) if o]
+    used, bearing = used_names(work.statement, prover.systems, tree), bearing_names(work.statement, work.known)
     named = tuple(o for o in bearing if o in used), tuple(o for o in bearing if o not in used)
     needed = _needed(work, named[0]) if explain else {}
-    data = proof_to_json(tree) if certified else None
-    return Answer(Verdict.proved, "sign argument" if certified else "z3", *named, needed=needed, certificate=data)
+    data = certificate(work.statement, tree) if certified else None
+    notes = tuple(f"holds for every gain {g}" for g in _gains(work, prover, used))
+    method = "sign argument" if certified else "z3"
+    return Answer(Verdict.proved, method, *named, assumed=work.statement.assumed, needed=needed, notes=notes,
+                  certificate=data)  # fmt: skip
 
 
-def _certified(leaf: Leaf) -> bool:
-    reasons = [s.reason if isinstance(s, Turned) else s for s in leaf.steps]
-    return all(r.certified() for r in reasons if isinstance(r, Reason))
-
-
-def _used(work: Work, prover: Prover, tree: Proof) -> set[str]:
-    """Return the declarations behind the facts that were consulted and the letters that stand for others."""
-    facts = {name for leaf in leaves(tree) for step in leaf.steps for name in _facts(step)}
-    found = set[str]()
-    for known in prover.systems:
-        letters = [x for s in _letters(work.statement) for x in (s, f"d/dt {s}") if x in known.solved]
-        found |= {known.solved[x] for x in letters}
-        for x in letters:
-            for factor, _ in known.values[x].bottom:
-                known.nonzero(factor)
-        facts |= known.consulted
-        for name, (_, poly) in known.facts.items():
-            letters_of = known.ring.letters(poly)  # type: ignore[attr-defined]
-            if name in facts or (len(poly) == 1 and len(letters_of) == 1 and letters_of <= facts):
-                found.add(known.origins[name])
-        found |= {known.origins[n] for n in known.relations if known.origins.get(n)}
-    return found - {""}
-
-
-def _facts(step: Step) -> Iterator[str]:
-    match step:
-        case Reason(factors=factors, used=used):
-            yield from used
-            yield from (name for f in factors if f.reason is not None for name in _facts(f.reason))
-        case Turned(reason=reason):
-            yield from _facts(reason)
-        case _:
-            return
-
-
-def _letters(statement: Statement) -> set[str]:
-    nodes = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side)]
-    return {name_of(n) for n in nodes if isinstance(n, Symbol)}
+def _gains(work: Work, prover: Prover, used: set[str]) -> list[str]:
+    """Return the gains that may be any, because the claim is true without the declarations of the optimal ones."""
+    optimal = work.statement.theory.optimal
+    gains = [x for x, by in work.known.solved.items() if by in optimal and x in letters_of(work.statement)]
+    if not gains:
+        return []
+    declared = work.statement.theory.theory.declared
+    stable = {n for n, d in declared.items() if isinstance(d, DeclaredFact) and d.case}
+    try:
+        replace(prover, without=optimal | stable, certificates=False, systems=[], seeds=()).prove()
+    except (Failed, Unknown, Beyond):
+        return []
+    return gains
 
 
 def _needed(work: Work, names: Sequence[str]) -> dict[str, Counterexample]:
@@ -259,7 +239,7 @@ def _near(work: Work, model: Mapping[str, Fraction] | None) -> Failure | None:
 
 def _refuted(work: Work, failure: Failure) -> Answer:
     method = "undefined" if failure.undefined else "exact instance"
-    return Answer(Verdict.refuted, method, counterexample=example(work, failure), assumed=())
+    return Answer(Verdict.refuted, method, counterexample=example(work, failure), assumed=work.statement.assumed)
 
 
 def example(work: Work, failure: Failure) -> Counterexample:
@@ -286,7 +266,7 @@ def example(work: Work, failure: Failure) -> Counterexample:
 
 def _shown(statement: Statement, known: System) -> list[str]:
     """Return the letters of an instance that a reader needs, without inverses and what the claim does not mention."""
-    theory, used = statement.theory.theory, _letters(statement)
+    theory, used = statement.theory.theory, letters_of(statement)
     hidden = {d.name for d in theory.declared.values() if isinstance(d, DeclaredInverse)}
     for item in theory.declared.values():
         match item:

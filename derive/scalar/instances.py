@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import islice
 from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
@@ -21,7 +20,7 @@ from derive.scalar.system import System
 __all__ = ["Instance", "Instances"]
 
 SIZES = (0, 1, 2, Fraction(1, 2), 3, 4, Fraction(1, 3), Fraction(3, 2), 5)  # absolute values, simplest first
-TRIED = 6_000  # points for the free letters, at most
+TRIED = 3_000  # points for the free letters, at most
 RELATION = {"nonnegative": "≥", "positive": ">", "nonzero": "≠"}
 
 
@@ -52,7 +51,8 @@ class Instances:
         solved = {*system.values, *self.dependent, *roots}
         self.free = [n for n in names if n not in solved and not n.startswith("√")]
         self.found: list[Instance] = []
-        self.source = iter(()) if system.impossible else self._search()
+        self.tried = 0
+        self.points = iter(()) if system.impossible else self._search()
 
     def _dependent(self, roots: set[str]) -> dict[str, Any]:
         """Return a letter for each equation that remains, with that equation."""
@@ -66,21 +66,15 @@ class Instances:
                 found[min(usable, key=lambda n: (-(degrees[n] == 2), degrees[n], n))] = poly
         return found
 
-    def __iter__(self) -> Iterator[Instance]:
-        """Iterate over the instances, the simplest first."""
-        i = 0
-        while True:
-            while len(self.found) <= i:
-                new = next(self.source, None)
-                if new is None:
-                    return
-                self.found.append(new)
-            yield self.found[i]
-            i += 1
-
-    def first(self, count: int) -> list[Instance]:
-        """Return some instances."""
-        return list(islice(self, count))
+    def first(self, count: int, tries: int = TRIED) -> list[Instance]:
+        """Return instances, the simplest first, as many as are found at some points, counted from the beginning."""
+        while len(self.found) < count and self.tried < tries:
+            point = next(self.points, None)
+            if point is None:
+                break
+            self.tried += 1
+            self.found += self.at(point)
+        return self.found[:count]
 
     def at(self, point: Mapping[str, Any]) -> list[Instance]:
         """Return the instances in which the free letters have these values."""
@@ -103,11 +97,10 @@ class Instances:
         return self._at(poly, point)
 
     # ------------------------------------------------------------------------------------- search
-    def _search(self) -> Iterator[Instance]:
+    def _search(self) -> Iterator[dict[str, Any]]:
         pools = [self._pool(name) for name in self.free]
-        for choice in islice(_by_weight([len(p) for p in pools]), TRIED):
-            point = {name: pool[i] for name, pool, i in zip(self.free, pools, choice, strict=True)}
-            yield from self.at(point)
+        for choice in _by_weight([len(p) for p in pools]):
+            yield {name: pool[i] for name, pool, i in zip(self.free, pools, choice, strict=True)}
 
     def _pool(self, name: str) -> list[Any]:
         sign, strict = self.system.signs.get(name, (0, False))

@@ -81,6 +81,11 @@ class Leaf:
     steps: tuple[Step, ...] = ()
     impossible: bool = False
 
+    def certified(self) -> bool:
+        """Tell whether all reasons can be replayed."""
+        reasons = [s.reason if isinstance(s, Turned) else s for s in self.steps]
+        return all(r.certified() for r in reasons if isinstance(r, Reason))
+
 
 @dataclass(frozen=True)
 class Tree:

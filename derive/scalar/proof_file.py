@@ -2,19 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Any
 
 from derive.errors import InputError
-from derive.kernel import ANY, Poly
+from derive.interpret.statement import Statement
+from derive.kernel import ANY, Poly, Rejected
 from derive.kernel import Term as Addend
-from derive.real import Sign, SignProduct
-from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned
-from derive.serialise import RATIONAL
+from derive.real import NEGATION, Sign, SignProduct
+from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, accept, leaves
+from derive.scalar.reasons import letters_of
+from derive.serialise import RATIONAL, SCHEMAS
 
-__all__ = ["proof_from_json", "proof_to_json"]
+__all__ = ["RULE", "certificate", "proof_from_json", "proof_to_json", "replay_numbers"]
+
+RULE = "sign argument"
+KEYS = ("schema", "theory", "latex", "assume", "scalar", "symbols", "relations", "rule", "proof")
 
 DEPTH, LENGTH, SIZE = 16, 200, 5_000  # nesting, letters of a product, entries of a list
+
+
+# ---------------------------------------------------------------------------------------------- certificates
+def certificate(statement: Statement, proof: Proof) -> dict[str, Any]:
+    """Return the certificate of a statement about numbers, without the text it was read from."""
+    facts = {name for leaf in leaves(proof) for step in leaf.steps for name in _facts(step)}
+    return {
+        "schema": SCHEMAS["identities"],
+        "theory": statement.theory.key,
+        "latex": "",
+        "assume": [],
+        "scalar": statement.scalar,
+        "symbols": sorted(letters_of(statement)),
+        "relations": sorted(facts),
+        "rule": RULE,
+        "proof": proof_to_json(proof),
+    }
+
+
+def replay_numbers(data: Any, statement: Statement) -> None:
+    """Replay the certificate of a statement about numbers; ``statement`` is what its LaTeX says in its theory.
+
+    Raises:
+        InputError: it is not well-formed.
+        Rejected: it does not prove the statement, or shows something else than its own.
+    """
+    item = _dict(data, 0)
+    _keys(item, *KEYS)
+    proof = proof_from_json(item["proof"])
+    accept(statement, proof)
+    again = {**certificate(statement, proof), "latex": item["latex"], "assume": item["assume"]}
+    wrong = sorted(key for key in KEYS if again[key] != item[key])
+    if wrong:
+        raise Rejected(f"the file shows another {wrong[0]} than its own")
+
+
+def _facts(step: Step) -> Iterator[str]:
+    match step:
+        case Turned(reason=reason):
+            yield from _facts(reason)
+        case Reason(factors=factors, sign=sign):
+            if sign is not None:
+                yield from (name for p in sign.products for name in p.facts if name != NEGATION)
+                yield from (t.relation for t in sign.terms if t.relation != NEGATION)
+            yield from (name for f in factors if f.reason is not None for name in _facts(f.reason))
+        case _:
+            return
 
 
 # ---------------------------------------------------------------------------------------------- writing

@@ -372,6 +372,7 @@ def system(
         if isinstance(item, DeclaredFact) and item.case and item.name not in assumed:
             found.alternatives += _detectable(item, found)
     found.settle()
+    found.consulted.clear()
     return found
 
 
