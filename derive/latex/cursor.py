@@ -16,8 +16,9 @@ T = TypeVar("T")
 class Cursor:
     """Tokens and the place in them; every method that moves goes forward only."""
 
-    def __init__(self, tokens: list[Token], functions: Collection[str] = ()) -> None:
-        end = tokens[-1].end if tokens else 0
+    def __init__(self, tokens: list[Token], source: str, functions: Collection[str] = ()) -> None:
+        end = len(source.rstrip())
+        self.source = source
         self.tokens = [*tokens, Token("end", "", end, end)]
         self.functions = functions
         self.at = 0
@@ -46,9 +47,14 @@ class Cursor:
         """Return the columns from a token up to the place."""
         return start.start, max(start.end, self.tokens[self.at - 1].end if self.at else 0)
 
-    def shown(self, start: int) -> str:
-        """Return the tokens from a place in them up to here, as an error shows them."""
-        return "".join(t.shown() + " " * t.shown().startswith("\\") for t in self.tokens[start : self.at])[:60]
+    def skip_group(self) -> None:
+        """Go past a group in braces, or a single token."""
+        depth = 0
+        while True:
+            token = self.take()
+            depth += {"{": 1, "}": -1}.get(token.text, 0) if token.kind == "sign" else 0
+            if depth <= 0 or token.kind == "end":
+                return
 
     # -------------------------------------------------------------------------------------------- errors
     def fail(self, expected: str, token: Token | None = None) -> NoReturn:
@@ -56,10 +62,11 @@ class Cursor:
         token = token or self.look()
         raise Unreadable(token.start, expected, token.shown())
 
-    def ambiguous(self, start: Token | Node, one: str, two: str, got: str) -> NoReturn:
-        """Raise the error that a formula has two readings."""
-        column = start.start if isinstance(start, Token) else start.span[0]
-        raise Unreadable(column, f"either {one} or {two}", f"{got}, which can be read as both")
+    def ambiguous(self, at: Token | Node, one: str, two: str, since: Token | Node | None = None) -> NoReturn:
+        """Raise the error that a formula has two readings; it shows the source from ``since`` up to here."""
+        column, start = (x.start if isinstance(x, Token) else x.span[0] for x in (at, since or at))
+        got = " ".join(self.source[start : max(self.look().end, start + 1)].split())
+        raise Unreadable(column, f"either {one} or {two}", f"{got[:40]}, which can be both")
 
     @contextmanager
     def deeper(self, start: Token) -> Iterator[None]:

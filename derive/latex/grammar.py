@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
+from derive.latex.application import Reading, reading
 from derive.latex.macros import Macro, expand
 from derive.latex.names import Exponent
 from derive.latex.operands import ONE
@@ -35,7 +36,10 @@ from derive.latex.syntax import (
 from derive.latex.tokens import Token, Unreadable, sized, tokenise
 from derive.latex.vocabulary import SIGNS_OF_MULTIPLICATION
 
-NO_OPERANDS = frozenset(("forall", "pm", "mp", "cdot", "times", "ast", "qed", "hline", "star"))
+NO_OPERANDS = frozenset(
+    ("forall", "pm", "mp", "cdot", "times", "ast", "hline", "star", "top", "overset", "stackrel", "not")
+)
+QUANTIFIERS = frozenset(("all", "any", "each", "every", "for", "as", "when", "if", "with"))
 SIGNS = {"+": "+", "-": "-", "pm": "±", "mp": "∓"}
 
 
@@ -51,7 +55,7 @@ def read(source: str, *, macros: Mapping[str, Macro] | None = None, functions: C
         Unreadable: not a formula, or one with two readings; says where, what was expected and what was got.
     """
     tokens, label, tag = frame(list(sized(expand(tokenise(source), macros or {}))))
-    return Reader(tokens, functions).display(label, tag)
+    return Reader(tokens, source, functions).display(label, tag)
 
 
 class Reader(Operators):
@@ -79,16 +83,17 @@ class Reader(Operators):
         words, start = list[str](), self.at
         while True:
             token = self.look()
-            if token.kind == "word":
-                words.append(token.text)
-            elif token.kind == "command" and token.text == "forall":
-                words.append("for all")
-            elif token.kind not in ("break", "wide", "column") and token.text not in (",", ".", ";"):
+            if not self._separates(token):
                 break
+            words.append(token.text if token.kind == "word" else "for all" if token.text == "forall" else "")
             self.at += 1
         plain = self.at == start + 1 and self.tokens[start].text == ","
         number = self._number() if self.at > start else ""
         return " ".join(w for w in words if w), plain, number
+
+    def _separates(self, token: Token) -> bool:
+        """Return whether a token stands between statements."""
+        return token.kind in ("break", "wide", "column", "word") or token.text in (",", ".", ";", ":", "forall")
 
     def _number(self) -> str:
         """Go past the number of an equation at the end of the display."""
@@ -101,7 +106,7 @@ class Reader(Operators):
     def _statement(self) -> Node:
         node = self.relation()
         token = self.look()
-        if token.kind not in ("end", "break", "wide", "column", "word") and token.text not in (",", ".", ";", "forall"):
+        if not self._separates(token) and token.kind != "end":
             self.fail("an operator, a relation or the end of the formula")
         for part in walk(node):
             if part == Name("partial"):
@@ -131,7 +136,7 @@ class Reader(Operators):
             if not self.took("=", "relation"):
                 self.fail("= after \\not")
             return "≠"
-        self.index()
+        self.skip_group()
         braced = self.took("{")
         relation = self.take()
         if relation.kind != "relation" or (braced and not self.took("}")):
@@ -168,7 +173,7 @@ class Reader(Operators):
             return
         following = self.tokens[self.at : self.at + 3]
         if [t.text for t in following[1:]] == ["_", last.index.letter]:
-            self.ambiguous(last, "\\sum (a_i + b_i)", "(\\sum a_i) + b_i", "\\sum a_i + b_i")
+            self.ambiguous(following[0], "\\sum (a_i + b_i)", "(\\sum a_i) + b_i", last)
 
     # -------------------------------------------------------------------------------------------- products
     def product(self) -> Node:
@@ -209,7 +214,7 @@ class Reader(Operators):
         return token.kind in ("letter", "number", "begin") or (token.text == "{" and token.kind == "sign")
 
     def _refuse_number(self, token: Token) -> None:
-        self.ambiguous(token, f"\\cdot {token.text}", f"an index _{{{token.text}}}", f"{token.text} behind a factor")
+        self.ambiguous(token, f"\\cdot {token.text}", f"an index _{{{token.text}}}")
 
     def _divided(self, factors: list[Node], start: Token) -> list[Node]:
         """Read what stands behind a stroke; a factor behind it has two readings."""
@@ -219,11 +224,11 @@ class Reader(Operators):
         top, bottom = _flat(factors), self.factor()
         token = self.look()
         if token.text == "/" and token.kind == "sign":
-            self.ambiguous(token, "a/(b c)", "a c/b", "a/b/c")
+            self.ambiguous(token, "a/(b/c)", "(a/b)/c", start)
         grouped = token.kind == "delimiter" and token.text in ("(", "[", "\\{")
         closed = isinstance(bottom, Fenced | Matrix) and not grouped
         if self.starts_operand(token) and not self.ends_integrand() and not closed:
-            self.ambiguous(token, "a/(b c)", "(a/b) c", "a/b c")
+            self.ambiguous(token, "a/(b c)", "(a/b) c", start)
         return [Over(top[0] if len(top) == 1 else Times(top), bottom, span=self.span(start))]
 
     def _derivative_by_stroke(self, above: list[Node], start: Token) -> Node:
@@ -240,7 +245,7 @@ class Reader(Operators):
         start = self.look()
         factors = self._factors()
         if len(factors) > 1:
-            self.ambiguous(start, "with the group behind the letter", "without it", "a letter and a group behind it")
+            self.ambiguous(start, "the letter with the group behind it", "the letter alone")
         return factors[0]
 
     def _factors(self) -> list[Node]:
@@ -257,11 +262,18 @@ class Reader(Operators):
         if token.text not in ("(", "["):
             return [self._raised(node, exponents, start)]
         group = self.fenced()
-        if isinstance(group, Fenced) and group.fence in "([" and self.applies(node, group):
+        if isinstance(group, Fenced) and group.fence in ("(", "[") and self._applies(node, group):
             arguments = group.body.items if isinstance(group.body, Listed) else (group.body,)
             applied = Applied(node, arguments, span=self.span(start))
             return [self._raised(applied, exponents, start) if exponents else self.scripted(applied, start)]
         return [self._raised(node, exponents, start), self.scripted(group, token)]
+
+    def _applies(self, head: Name, group: Fenced) -> bool:
+        found = reading(head, group, self.functions)
+        if found is Reading.BOTH:
+            shown = head.letter if len(head.letter) == 1 else "\\" + head.letter
+            self.ambiguous(head, f"a product, {shown} \\cdot (...)", f"{shown} as a function")
+        return found is Reading.APPLIED
 
     def scripted(self, node: Node, start: Token) -> Node:
         """Read the scripts behind a node."""
@@ -298,7 +310,7 @@ def _merged(statements: list[Node], words: list[str], commas: list[bool]) -> tup
             out[-1] = replace(last, sides=(*last.sides[:-1], Listed((*items, node), span=side.span)))
             kept[-1] = words[i + 1]
             continue
-        if not isinstance(node, Related) and commas[i + 1]:
+        if not isinstance(node, Related) and commas[i + 1] and not QUANTIFIERS & set(words[i].split()):
             waiting.append(node)
         elif waiting and isinstance(node, Related) and commas[i]:
             listed = Listed((*waiting, node.sides[0]), span=waiting[0].span)

@@ -11,11 +11,9 @@ from derive.latex.alphabet import GREEK
 from derive.latex.cursor import Cursor
 from derive.latex.syntax import Digits, Fenced, Inverted, Name, Node, Over, Raised, Span, Transposed
 from derive.latex.tokens import Token
-from derive.latex.vocabulary import ACCENT_COMMANDS, COMBINING, ELLIPSES, FUNCTIONS, ROMAN, STYLES, TRANSPOSES
+from derive.latex.vocabulary import ACCENT_COMMANDS, COMBINING, ELLIPSES, FUNCTIONS, MARKS, ROMAN, STYLES, TRANSPOSES
 
 Exponent = Callable[[Node, Span], Node]
-MARKS = {"infty": "∞", "top": "⊤", "ast": "*", "star": "⋆", "dagger": "†", "circ": "∘", "perp": "⊥", "cdot": "·",
-         "prime": "'", "pm": "±", "parallel": "∥", "bullet": "•"}  # fmt: skip
 UNDRESSED = STYLES | ROMAN | {"mathbb"}
 LOOKAHEAD = 10  # tokens of a script that is told by its pattern
 
@@ -96,7 +94,7 @@ class Names(Cursor):
         """Refuse x_10, which LaTeX sets as x_1 0."""
         if token.kind == "number" and len(token.text) > 1:
             one, rest = token.text[0], token.text[1:]
-            self.ambiguous(token, f"{mark}{{{token.text}}}", f"{mark}{one} \\cdot {rest}", mark + token.text)
+            self.ambiguous(token, f"{mark}{{{token.text}}}", f"{mark}{one} \\cdot {rest}")
 
     # -------------------------------------------------------------------------------------------- exponents
     def exponent(self) -> Exponent | str:
@@ -110,7 +108,7 @@ class Names(Cursor):
         if start.text == "-" and start.kind == "sign":
             following = self.look(1)
             if following.start == start.end and following.kind in ("number", "letter", "command"):
-                self.ambiguous(start, f"^{{-{following.text}}}", f"^{{-}} {following.text}", f"^-{following.text}")
+                self.ambiguous(start, f"^{{-{following.text}}}", f"^{{-}} {following.text}")
             self.at += 1
             return "-"
         self._one_digit(start, "^")
@@ -169,7 +167,7 @@ class Names(Cursor):
 
     def _inverse_transpose(self, body: Node, mark: str, span: Span) -> Node:
         if body == Name("e") and mark == "T":
-            self.ambiguous(replace(body, span=span), "\\exp(-T)", "e^{-\\top}", "e^{-T}")
+            self.ambiguous(replace(body, span=span), "\\exp(-T)", "e^{-\\top}")
         return Transposed(Inverted(body, span=span), TRANSPOSES[mark], span=span)
 
     def _by_t(self, start: Token) -> Exponent:
@@ -178,7 +176,7 @@ class Names(Cursor):
 
         def raised(body: Node, span: Span) -> Node:
             if not isinstance(body, Digits) and body != Name("e"):
-                self.ambiguous(start, "^\\top", "a power, written with \\cdot{}^{(t)} or e^{A t}", "^t")
+                self.ambiguous(start, "a transpose ^\\top", "a power ^{(t)}")
             return Raised(body, power, span=span)
 
         return raised
@@ -211,7 +209,7 @@ class Names(Cursor):
     def _prime(self) -> Exponent:
         token, mark = self.take(), "prime" if self.tokens[self.at - 1].text == "'" else self.tokens[self.at - 1].text
         if self.look().text == "'":
-            self.ambiguous(token, "a second derivative (\\ddot)", "a transpose of a transpose", "''")
+            self.ambiguous(token, "a second derivative \\ddot", "a transpose of a transpose")
         return lambda body, span: Transposed(body, mark, span=span)
 
     def indexed(self, node: Node, sub: str, sup: str, start: Token) -> Node:

@@ -15,18 +15,14 @@ from derive.latex.syntax import (
     Fenced,
     Given,
     Infinite,
-    Inverted,
     Listed,
     Matrix,
     Name,
     Node,
-    Over,
     Plus,
     Radical,
-    Raised,
     Related,
     Times,
-    Transposed,
 )
 from derive.latex.tokens import Token, Unreadable
 from derive.latex.vocabulary import (
@@ -41,16 +37,13 @@ from derive.latex.vocabulary import (
     FUNCTION_COMMANDS,
     FUNCTIONS,
     MATRICES,
-    MOMENTS,
     ROMAN,
     STYLES,
-    TRANSPARENT,
     UNMARKED,
 )
 
 FENCES = {"(": "(", "[": "[", "\\{": "{", "|": "|", "‖": "‖"}
 ONE = Digits(Fraction(1))
-SPECTRAL = frozenset(("lambda", "sigma"))  # with an index or a bar they are functions of a matrix
 
 
 class Operands(Names):
@@ -139,7 +132,7 @@ class Operands(Names):
         inside = self.starts_operand(after) or after.text in ("^", "_", "'", "/") or _ends_operand(before)
         hidden = isinstance(node, Plus) and (inside or before.text in ("-", "/", "cdot", "times", "*"))
         if hidden or (isinstance(node, Times) and after.text in ("^", "_", "'")):
-            self.ambiguous(start, "brackets ( ) around it", "no group at all", "braces, which do not show")
+            self.ambiguous(start, "a group in brackets ( )", "no group, as braces do not show")
         return node
 
     def starts_operand(self, token: Token) -> bool:
@@ -175,8 +168,8 @@ class Operands(Names):
                 while self.tokens[i].kind == "letter" and (not run or self.tokens[i].start == self.tokens[i - 1].end):
                     run += self.tokens[i].text if len(self.tokens[i].text) == 1 and len(run) < 8 else "?"
                     i += 1
-        if run in UNMARKED:
-            self.ambiguous(token, rf"\{run} or \operatorname{{{run}}}", " ".join(run), run)
+        if run in UNMARKED or (len(run) > 3 and run[1:] in ("hat", "bar", "tilde", "dot")):
+            self.ambiguous(token, rf"\{run}", " ".join(run))
         return Name(token.text, span=(token.start, token.end))
 
     def upright_name(self) -> Node | None:
@@ -208,7 +201,7 @@ class Operands(Names):
         name = token.text
         if name in ROMAN:
             return self.upright_name() or self._styled()
-        if name in STYLES or name in TRANSPARENT:
+        if name in STYLES:
             return self._styled()
         if name == "mathbb":
             return self._blackboard()
@@ -369,43 +362,7 @@ class Operands(Names):
             self.at += 1
         return condition
 
-    # -------------------------------------------------------------------------------------------- application
-    def applies(self, head: Name, group: Fenced) -> bool:
-        """Return whether a letter is applied to the group behind it; see the module grammar for the rules."""
-        items = group.body.items if isinstance(group.body, Listed) else (group.body,)
-        if head.letter in self.functions or len(items) > 1 or head.letter in ("rho", "delta"):
-            return True
-        if head.letter in SPECTRAL and (head.sub or {"bar", "underline"} & set(head.accents)):
-            return True
-        if all(map(momentary, items)):
-            return True
-        if isinstance(group.body, Name) or (head.letter in SPECTRAL | EXPECTATIONS):
-            shown = head.letter if len(head.letter) == 1 else "\\" + head.letter
-            self.ambiguous(head, f"the product {shown} \\cdot (...)", f"the function {shown} of (...)", f"{shown}(...)")
-        return False
-
 
 def _ends_operand(token: Token) -> bool:
     """Return whether a token can be the last of an operand."""
     return token.kind in ("letter", "number") or token.text in (")", "]", "\\}", "}", "'")
-
-
-def momentary(node: Node) -> bool:
-    """Return whether a node looks like a time, a frequency or an index: t, s, k - 1, 0, t_0, j omega, e^{j omega}."""
-    match node:
-        case Name(letter=letter):
-            return letter in MOMENTS
-        case Digits() | Infinite() | Blank("·"):
-            return True
-        case Plus(addends):
-            return all(momentary(addend) for _, addend in addends)
-        case Times(factors):
-            return all(momentary(f) or f == Name("pi") or f == Name("d") for f in factors)
-        case Raised(Name("e"), exponent):
-            return momentary(exponent)
-        case Transposed(body) | Inverted(body):
-            return momentary(body)
-        case Raised(body, exponent) | Over(body, exponent) | Given(body, exponent):
-            return momentary(body) and momentary(exponent)
-        case _:
-            return False

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from derive.latex.operands import ONE, Operands, momentary
+from derive.latex.application import momentary
+from derive.latex.operands import ONE, Operands
 from derive.latex.syntax import (
     Called,
     Differentiated,
@@ -77,9 +78,7 @@ class Operators(Operands):
         self.at += 1
         power = self.argument()
         if not isinstance(power, Digits):
-            self.ambiguous(
-                start, f"\\{function} of (...)^{{-1}}", f"(\\{function} (...))^{{-1}}", f"\\{function}^{{...}}"
-            )
+            self.ambiguous(self.look(), f"the inverse function of {function}", f"a power of {function}(...)", start)
         return power
 
     def _bracketed(self, function: str, sub: Node | None, start: Token) -> Node:
@@ -93,8 +92,7 @@ class Operators(Operands):
         raised = self.scripted(group, token)
         if function == "det" or (function in THROUGH and not isinstance(raised, Raised)):
             return Called(function, (raised,), sub, span=self.span(start))
-        shown = f"\\{function} (...)^{{...}}"
-        self.ambiguous(start, f"(\\{function}(...))^{{...}}", f"\\{function}((...)^{{...}})", shown)
+        self.ambiguous(token, f"({function}(...))^n", f"{function}((...)^n)", start)
 
     def scripted(self, node: Node, start: Token) -> Node:
         """Read the scripts behind a node."""
@@ -128,8 +126,8 @@ class Operators(Operands):
 
     def _two_readings(self, function: str, start: Token) -> None:
         if self.look().text == "/":
-            self.ambiguous(start, f"\\{function}(a/b)", f"(\\{function} a)/b", f"\\{function} a/b")
-        self.ambiguous(start, f"\\{function}(a b)", f"(\\{function} a) b", f"\\{function} a b")
+            self.ambiguous(self.look(), f"{function}(a/b)", f"({function} a)/b", start)
+        self.ambiguous(self.look(), f"{function}(a b)", f"({function} a) b", start)
 
     # -------------------------------------------------------------------------------------------- sums and integrals
     def operator(self, token: Token) -> Node | None:
@@ -235,9 +233,7 @@ class Operators(Operands):
                 variable = self.differential() if found is None else found
                 self.integral, self.numerator = outer
                 if self.at_differential() and not self.ends_integrand():
-                    self.ambiguous(
-                        self.look(), "the differential of another integral", "a factor d", "d behind an integral"
-                    )
+                    self.ambiguous(self.look(), "the differential of another integral", "a factor d")
         return Integrated(body, variable, lower, upper, span=self.span(start))
 
     def ends_integrand(self) -> bool:
@@ -307,7 +303,7 @@ class Operators(Operands):
             token = self.look()
             body = self.product()
         if isinstance(body, Times) and isinstance(body.factors[0], Fenced) and body.factors[0].fence in ("(", "[", "{"):
-            self.ambiguous(token, "d/dt (a b)", "(d/dt a) b", "a factor behind d/dt (...)")
+            self.ambiguous(token, "d/dt of the product", "d/dt of the brackets alone")
         return body
 
 

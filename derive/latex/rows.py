@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from derive.latex.tokens import Token, Unreadable
-from derive.latex.vocabulary import COLUMNED, LAYOUTS, MATRICES, SIGNS_OF_MULTIPLICATION
+from derive.latex.vocabulary import BOXES, COLUMNED, LAYOUTS, MATRICES, SIGNS_OF_MULTIPLICATION
 
 SIGNS = frozenset("+-*/") | SIGNS_OF_MULTIPLICATION | {"pm", "mp"}
 MAX_DEPTH = 20
@@ -22,7 +22,7 @@ def frame(tokens: list[Token]) -> tuple[list[Token], str, str]:
     body = [t for t in tokens if t.kind not in ("label", "tag")]
     label = next((t.text for t in tokens if t.kind == "label"), "")
     tag = ", ".join(t.text.strip("() ") for t in tokens if t.kind == "tag")
-    return _joined(_flattened(_undollared(_systems(_paired_bars(_unbroken(body)))))), label, tag
+    return _joined(_flattened(_unboxed(_undollared(_systems(_paired_bars(_unbroken(body))))))), label, tag
 
 
 def _undollared(tokens: list[Token]) -> list[Token]:
@@ -31,6 +31,19 @@ def _undollared(tokens: list[Token]) -> list[Token]:
     while first < last and tokens[first].text == "$" and tokens[last - 1].text == "$" and first < last - 1:
         first, last = first + 1, last - 1
     return tokens[first:last]
+
+
+def _unboxed(tokens: list[Token]) -> list[Token]:
+    """Drop the box around a whole display."""
+    inner = tokens[:-1] if tokens and tokens[-1].text in (".", ",", ";") else tokens
+    if len(inner) < 4 or inner[0].text not in BOXES or inner[1].text != "{" or inner[-1].text != "}":
+        return tokens
+    depth = 0
+    for t in inner[1:-1]:
+        depth += {"{": 1, "}": -1}.get(t.text, 0)
+        if not depth:
+            return tokens
+    return inner[2:-1]
 
 
 def _unbroken(tokens: list[Token]) -> list[Token]:

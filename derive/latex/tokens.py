@@ -69,7 +69,9 @@ class Token:
         match self.kind:
             case "end":
                 return "the end of the formula"
-            case "break" | "column":
+            case "delimiter" if self.text == "null":
+                return f"\\{self.side}."
+            case "break" | "column" | "wide":
                 return "the end of a row"
             case "command":
                 return f"\\{self.text[:40]}"

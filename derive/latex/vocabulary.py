@@ -49,7 +49,7 @@ STYLES = _words(
     "mathbfit mathop mathrel mathbin mathord mathopen mathclose mathpunct ensuremath"
 )
 ROMAN = frozenset(("mathrm", "operatorname", "mathup", "rm", "symrm", "symup"))
-TRANSPARENT = frozenset(("boxed", "fbox", "mathinner"))
+BOXES = frozenset(("boxed", "fbox"))
 BRACED = {"underbrace": "_", "overbrace": "^"}
 BLACKBOARD = {"R": "ℝ", "C": "ℂ", "N": "ℕ", "Z": "ℤ", "Q": "ℚ", "S": "𝕊", "P": "ℙ", "V": "𝕍", "I": "I", "1": "1"}
 
@@ -80,7 +80,10 @@ FUNCTIONS = {
 OPEN_FUNCTIONS = frozenset(("max", "min", "lim", "inf", "sup", "argmin", "argmax", "limsup", "liminf"))
 TRIGONOMETRIC = _words("sin cos tan cot sinh cosh tanh ln log exp")
 FUNCTION_COMMANDS = {name: f for name, f in FUNCTIONS.items() if name not in ("real", "imag", "vec", "span", "col")}
-UNMARKED = _words("tr det max min ln log exp sin cos tan diag rank lim inf sup sqrt trace inv diag cov var")
+# runs of letters that somebody meant as a word and LaTeX sets as a product
+UNMARKED = _words("tr det max min ln log exp sin cos tan diag rank lim inf sup sqrt trace inv cov var Tr Cov Var") | {
+    name for name in GREEK if name not in ("eta", "chi")
+}
 
 TRANSPOSES = {"top": "top", "intercal": "top", "T": "T", "*": "star", "ast": "star", "prime": "prime", "'": "prime",
               "dagger": "dagger", "dag": "dagger", "H": "H"}  # fmt: skip
@@ -96,6 +99,10 @@ LAYOUTS = _words(
 COLUMNED = frozenset(("align", "aligned", "alignat", "alignedat", "flalign"))
 MATRICES = {"bmatrix": "[", "pmatrix": "(", "matrix": "", "Bmatrix": "{", "vmatrix": "|", "Vmatrix": "‖",
             "smallmatrix": "", "array": "", "bsmallmatrix": "[", "psmallmatrix": "("}  # fmt: skip
+
+# signs of an index and of a mark above a letter
+MARKS = {"infty": "∞", "top": "⊤", "ast": "*", "star": "⋆", "dagger": "†", "circ": "∘", "perp": "⊥", "cdot": "·",
+         "prime": "'", "pm": "±", "parallel": "∥", "bullet": "•"}  # fmt: skip
 
 # letters that stand for times, frequencies and indices when they are an argument
 MOMENTS = _words("t s z k i j n h T N tau omega sigma theta nu Delta Omega")
