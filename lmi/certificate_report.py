@@ -7,7 +7,7 @@ from math import ceil, floor, log10
 
 from lmi.certificate import Bounds, Certificate, Check, Interval
 
-__all__ = ["at_least", "at_most", "proved_lines", "rejected_line"]
+__all__ = ["above", "at_least", "at_most", "ends", "proved_lines", "rejected_line"]
 
 DIGITS = 30
 """Most significant digits printed."""
@@ -50,6 +50,12 @@ def ends(interval: Interval) -> tuple[str, str]:
     digits = next((d for d in range(1, DIGITS) if at_least(interval.lower, d) != at_least(interval.upper, d)), DIGITS)
     digits = min(DIGITS, max(FEWEST, digits + SPARE))
     return at_least(interval.lower, digits), at_most(interval.upper, digits)
+
+
+def above(interval: Interval) -> tuple[str, str]:
+    """Return a lower end, and by how much more than that, as it is printed, the upper end may be."""
+    lower = ends(interval)[0]
+    return lower, at_most(interval.upper - Fraction(lower), 3)
 
 
 def at_least(x: Fraction, digits: int) -> str:

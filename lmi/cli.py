@@ -47,7 +47,8 @@ def cli(context: click.Context) -> None:
 @click.option(
     "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True, help="What to print."
 )
-def validate(plant: str, form: str) -> int:
+@click.option("--certificate", metavar="FILE", help="Where to write the exact certificate; lmi certify verifies it.")
+def validate(plant: str, form: str, certificate: str | None) -> int:
     """Compute the optimal error covariance of PLANT by every route and compare them in one table.
 
     PLANT is a file (.toml, .json, .npz, .mat) with time, A, C, W, V and optionally N, M, B, D_u.
@@ -60,6 +61,10 @@ def validate(plant: str, form: str) -> int:
     try:
         with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
             validation = run(plant, progress=status.update)
+        if certificate is not None and validation.certificate.certified is not None:
+            from lmi.certificate_file import write_certificate
+
+            write_certificate(validation.certificate.certified.certificate, certificate)
     except InputError as error:
         raise click.ClickException(str(error)) from None
     if form == "json":

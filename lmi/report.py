@@ -28,7 +28,7 @@ def print_table(validation: Validation, file: TextIO | None = None) -> None:
     for route in validation.routes:
         if ":" in route.status:
             console.print(Text(f"{route.name}: {route.status}"), soft_wrap=True)
-    for line in proved_lines(validation):
+    for line in (*proved_lines(validation), validation.certificate.line()):
         console.print(Text(line), soft_wrap=True)
     said = fill(verdict_line(validation), WIDTH, subsequent_indent="  ", break_on_hyphens=False)
     console.print(Text(said, style=STYLES[validation.verdict]), soft_wrap=True)
@@ -74,7 +74,7 @@ def _weighted(validation: Validation) -> bool:
 def verdict_line(validation: Validation) -> str:
     """Return the verdict in one line: who confirms, or who disagrees and by how much."""
     riccati = validation.routes[0]
-    confirming = [route for route in validation.routes if route.agrees and riccati.name in route.independent_of]
+    confirming = validation.confirming
     match validation.verdict:
         case Verdict.AGREE:
             worst = max(route.relative_difference or 0.0 for route in confirming)
@@ -82,6 +82,8 @@ def verdict_line(validation: Validation) -> str:
             names = ", ".join(route.name for route in confirming)
             return f"agree: {names} confirm riccati{strong} to {worst:.0e}"
         case Verdict.DISAGREE:
+            if validation.excluded:
+                return "disagree: the certificate proves the tr P of riccati wrong"
             wrong = [route for route in validation.routes if route.disagrees]
             names = ", ".join(
                 f"{route.name} is proved wrong"
@@ -90,6 +92,8 @@ def verdict_line(validation: Validation) -> str:
                 for route in wrong
             )
             return f"disagree: tolerance {AGREEMENT:.0e}, {names}"
+        case Verdict.UNCONFIRMED if confirming:
+            return "unconfirmed: there is no certificate"
         case Verdict.UNCONFIRMED:
             return "unconfirmed: no route independent of riccati is accurate enough"
 

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
-from lmi.comparison import Reference, Route, judged
+from lmi.certification_outcome import CertificateOutcome, attempt_certificate
+from lmi.comparison import AGREEMENT, Reference, Route, judged
 from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
 from lmi.routes import ROUTES, Answer, RouteSpec, nuclear_norm
 
@@ -40,12 +41,16 @@ class Validation:
         routes: the table.
         enclosure: what is proved when the plant's numbers are taken as exact.
         reads_as_boundary: whether the routes read modes as on the boundary that the exact numbers have beside it.
+        certificate: an exact sandwich of the optimum, or why there is none.
+        excluded: whether the certificate proves Riccati's tr P wrong.
     """
 
     plant: Plant
     routes: tuple[Route, ...]
     enclosure: Enclosure
     reads_as_boundary: bool
+    certificate: CertificateOutcome
+    excluded: bool
 
     def route(self, name: str) -> Route:
         """Return the route of that name."""
@@ -53,13 +58,16 @@ class Validation:
 
     @property
     def verdict(self) -> Verdict:
-        """Return "agree" when a route independent of Riccati confirms it and none disagrees, or is proved wrong."""
-        if any(route.disagrees for route in self.routes):
+        """Return "agree" when the certificate holds, a route independent of Riccati confirms it and none disagrees."""
+        if self.excluded or any(route.disagrees for route in self.routes):
             return Verdict.DISAGREE
-        riccati = self.routes[0]
-        if any(route.agrees and riccati.name in route.independent_of for route in self.routes):
-            return Verdict.AGREE
-        return Verdict.UNCONFIRMED
+        return Verdict.AGREE if self.confirming and self.certificate.certified else Verdict.UNCONFIRMED
+
+    @property
+    def confirming(self) -> tuple[Route, ...]:
+        """The routes that share no computation with Riccati's and agree with it."""
+        riccati = self.routes[0].name
+        return tuple(route for route in self.routes if route.agrees and riccati in route.independent_of)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the validation as plain data, schema lmi-validate/1."""
@@ -68,7 +76,8 @@ class Validation:
             "plant": _plant_dict(self.plant),
             "routes": [_route_dict(route) for route in self.routes],
             "enclosure": self.enclosure.as_dict(),
-            "certificate": None,
+            "certificate": self.certificate.as_dict(),
+            "certificate_status": self.certificate.status,
             "verdict": self.verdict.value,
         }
 
@@ -80,7 +89,7 @@ def validate(
 
     Args:
         plant: a `Plant`, the path of a plant file, or a mapping with the keys of one.
-        progress: called with the name of each route as it starts, first with "enclosure".
+        progress: called with the name of each route as it starts, first with "enclosure", last with "certificate".
 
     Returns:
         The table of routes with its verdict. A route that fails or does not apply is in it, with the reason.
@@ -103,7 +112,11 @@ def validate(
     reference = Reference.of(plant, answer, enclosure)
     routes = [judged(first, answer, seconds, reference)]
     routes += [judged(spec, *run(spec), reference) for spec in others]
-    return Validation(plant, tuple(routes), enclosure, reference.reads_as_boundary)
+    progress("certificate")
+    certificate = attempt_certificate(plant)
+    admitted = max(AGREEMENT * reference.trace_size, answer.error if np.isfinite(answer.error) else 0.0)
+    excluded = certificate.excludes(routes[0].trace, admitted) and not answer.boundary_modes
+    return Validation(plant, tuple(routes), enclosure, reference.reads_as_boundary, certificate, excluded)
 
 
 def _as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:

@@ -246,9 +246,9 @@ def test_routes_name_each_other_as_independent_both_ways():
 
 def test_json_has_the_keys_of_the_schema_and_the_plant_can_be_read_back():
     data = json.loads(json.dumps(validate(example_plant()).as_dict(), allow_nan=False))
-    assert list(data) == ["schema", "plant", "routes", "enclosure", "certificate", "verdict"]
+    assert list(data) == ["schema", "plant", "routes", "enclosure", "certificate", "certificate_status", "verdict"]
     assert data["schema"] == "lmi-validate/1"
-    assert data["certificate"] is None
+    assert (data["certificate"]["schema"], data["certificate_status"]) == ("lmi-certificate/1", "certified")
     assert data["verdict"] == "agree"
     keys = {"name", "trace", "cost", "gain", "status", "relative_difference", "seconds", "independent_of"}
     for route in data["routes"]:
