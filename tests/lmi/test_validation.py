@@ -283,7 +283,7 @@ def test_a_plant_comes_as_plant_mapping_or_path(tmp_path):
         names.clear()
         validation = lmi.validate(plant, progress=names.append)
         assert validation.routes[0].trace == pytest.approx(np.sqrt(2) - 1)
-    assert names == ["enclosure", *NAMES]
+    assert names == ["enclosure", *NAMES, "certificate"]
     with pytest.raises(InputError):
         lmi.validate({"time": "continuous"})
 
