@@ -19,6 +19,7 @@ from derive.spectral import (
     Det,
     Distance,
     Entry,
+    Growth,
     ImaginaryPart,
     Modulus,
     RealPart,
@@ -103,6 +104,8 @@ def _spectral(term: Term) -> Any:
             return sympy.Sum(_number(body), (_index(index), 1, _number(count)))
         case Modulus(body):
             return sympy.Abs(_number(body))
+        case Growth(root):
+            return sympy.log(sympy.Max(1, sympy.Abs(_root(root))))
         case At(body, symbol, point):
             return sympy.Subs(_number(body), _number(symbol), _number(point))
         case TimesLog(x, a):

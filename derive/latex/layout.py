@@ -373,18 +373,8 @@ def _flat(addends: Iterable[Term]) -> Iterator[Term]:
         yield from _flat(addend.addends) if isinstance(addend, Sum) else (addend,)
 
 
-NAMED = (
-    Log,
-    Arctan,
-    Limit,
-    Max,
-    Growth,
-    Det,
-    Total,
-    Roots,
-    RealPart,
-    ImaginaryPart,
-)  # set off from the factor before them
+# set off from the factor before them
+NAMED = (Log, Arctan, Limit, Max, Growth, Det, Total, Roots, RealPart, ImaginaryPart)
 
 
 def _product(term: Term) -> Box:
