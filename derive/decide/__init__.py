@@ -45,9 +45,10 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
 
 def _with_neighbours(answer: Answer, statement: Statement) -> Answer:
     """Add the convention in which a refuted claim holds, and the nearest true formula with its explanation."""
-    from derive.decide.convention import conventions
-    from derive.decide.nearest import nearest
+    from derive.decide.convention import conventions, letters
+    from derive.decide.nearest import Surroundings, nearest
 
-    found = nearest(statement)
-    notes = (*answer.notes, *conventions(statement), *([found[1]] if found and found[1] else []))
+    around = Surroundings.of(statement, letters(statement))
+    found = nearest(around)
+    notes = (*answer.notes, *conventions(around), *([found[1]] if found and found[1] else []))
     return replace(answer, notes=notes, nearest=found[0] if found else None)

@@ -108,7 +108,9 @@ def _part(part: Part, theory: Any) -> dict[str, Any]:
         names |= {name for p in part.order.products for name in (p.one, p.two)}
         return {"rule": part.rule, "relations": sorted(names), "order": to_json(part.order, theory)}
     shown_proofs = certificates(part.proof, theory)
+    image = {} if part.image is None else {"image": to_json(part.image, theory)}
     return {
+        **image,
         "rule": part.rule,
         "relations": sorted({r for c in shown_proofs for r in c["relations"]}),
         "certificates": shown_proofs,
@@ -200,8 +202,11 @@ def _read_parts(item: Mapping[str, Any], reader: Reader) -> list[Part]:
             a_dict(part, "parts", ("rule", "relations", "order"))
             found.append(Part(_text(part["rule"]), order=_read_order(part["order"], reader)))  # type: ignore[arg-type]
         else:
-            a_dict(part, "parts", ("rule", "relations", "certificates"))
-            found.append(Part(_text(part["rule"]), reader.proof(part["certificates"])))  # type: ignore[arg-type]
+            extra = ("image",) if "image" in part else ()
+            a_dict(part, "parts", ("rule", "relations", "certificates", *extra))
+            image = reader.read(Poly, part["image"], "image") if extra else None
+            proof = reader.proof(part["certificates"])
+            found.append(Part(_text(part["rule"]), proof, image=image))  # type: ignore[arg-type]
     return found
 
 

@@ -10,12 +10,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
 from derive.decide.matrix import prove_statement
-from derive.decide.nearest import with_equations
+from derive.decide.nearest import Surroundings, with_equations
 from derive.interpret.statement import Statement
-from derive.terms import Block, Equation, Neg, Symbol, Term, Transpose
+from derive.terms import Block, Equation, Neg, Symbol, Term, Transpose, walk
 from derive.theory.claims.base import ClaimTheory, indexed_name, split_index
 
-__all__ = ["conventions"]
+__all__ = ["conventions", "letters"]
 
 SECONDS = 0.3  # in all
 
@@ -50,9 +50,9 @@ NEIGHBOURS: Mapping[str, tuple[Neighbour, ...]] = {
 }
 
 
-def conventions(statement: Statement, seconds: float = SECONDS) -> tuple[str, ...]:
+def conventions(around: Surroundings, seconds: float = SECONDS) -> tuple[str, ...]:
     """Return in which neighbouring convention a refuted statement holds."""
-    deadline = time.monotonic() + seconds
+    statement, deadline = around.statement, time.monotonic() + seconds
     for neighbour in NEIGHBOURS.get(statement.theory.key, ()):
         images = _images(neighbour, statement)
         if not images or time.monotonic() > deadline:
@@ -60,9 +60,15 @@ def conventions(statement: Statement, seconds: float = SECONDS) -> tuple[str, ..
         changed = tuple(
             Equation(_replaced(e.lhs, images), e.relation, _replaced(e.rhs, images)) for e in statement.equations
         )
-        if prove_statement(with_equations(statement, changed), deadline - time.monotonic()):
+        if around.holds(changed) and prove_statement(with_equations(statement, changed), deadline - time.monotonic()):
             return (neighbour.sentence,)
     return ()
+
+
+def letters(statement: Statement) -> list[Symbol]:
+    """Return the letters that stand in a neighbouring convention."""
+    found = [_images(n, statement) for n in NEIGHBOURS.get(statement.theory.key, ())]
+    return [n for images in found for image in images.values() for n in walk(image) if isinstance(n, Symbol)]
 
 
 def _images(neighbour: Neighbour, statement: Statement) -> dict[str, Term]:

@@ -23,10 +23,20 @@ class Edit:
     """The edited formula, what was done, how large a change that is, and the kind and the piece for an explanation."""
 
     term: Term
-    text: str
+    words: tuple[str | Term, ...]
     cost: int
     kind: str
-    piece: str = ""
+    about: Term | None = None
+
+    @property
+    def text(self) -> str:
+        """What was done, in words."""
+        return "".join(w if isinstance(w, str) else plain(w) for w in self.words)
+
+    @property
+    def piece(self) -> str:
+        """The piece of the formula that the edit is about."""
+        return plain(self.about) if self.about is not None else ""
 
 
 def shape_of(term: Term) -> Shape | None:
@@ -119,17 +129,17 @@ def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Ite
         case Symbol(scalar=False):
             yield from _letter(term, letters)
         case Transpose(body):
-            yield Edit(body, f"{plain(body)} for {plain(term)}", 2, "transpose", plain(body))
+            yield Edit(body, (body, " for ", term), 2, "transpose", body)
         case Inverse(body):
-            yield Edit(body, f"without the inverse of {plain(body)}", 2, "inverse", plain(body))
+            yield Edit(body, ("without the inverse of ", body), 2, "inverse", body)
         case Number(value):
-            yield Edit(Number(2 * value), "twice the factor", 2, "factor 2")
-            yield Edit(Number(value / 2), "half the factor", 2, "factor 2")
-            yield Edit(Number(-value), "the other sign of the factor", 2, "sign")
+            yield Edit(Number(2 * value), ("twice the factor",), 2, "factor 2")
+            yield Edit(Number(value / 2), ("half the factor",), 2, "factor 2")
+            yield Edit(Number(-value), ("the other sign of the factor",), 2, "sign")
         case Sum(parts):
             yield from _sum(parts, addends)
         case Product(factors):
-            yield from _product(factors, letters)
+            yield from _product(factors)
         case _:
             pass
     if isinstance(term, (Symbol, Transpose, Inverse)) and not getattr(term, "scalar", False):
@@ -138,16 +148,17 @@ def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Ite
     if found and found[0] and not isinstance(term, Sum):
         for addend in addends:
             if shape_of(addend) == found:
-                yield Edit(Sum((term, addend)), f"with the addend {plain(addend)}", 4, "addend", plain(addend))
+                yield Edit(Sum((term, addend)), ("with the addend ", addend), 4, "addend", addend)
         if isinstance(term, (Product, Symbol)):
-            yield Edit(_times(2, term), f"2 {plain(term)} for {plain(term)}", 3, "factor 2")
-            yield Edit(_times(Fraction(1, 2), term), f"1/2 {plain(term)} for {plain(term)}", 3, "factor 2")
-            yield Edit(Neg(term), f"the other sign of {plain(term)}", 2, "sign", plain(term))
+            for number in (Fraction(2), Fraction(1, 2)):
+                twice = _times(number, term)
+                yield Edit(twice, (twice, " for ", term), 3, "factor 2")
+            yield Edit(Neg(term), ("the other sign of ", term), 2, "sign", term)
 
 
-def _times(number: int | Fraction, term: Term) -> Term:
+def _times(number: Fraction, term: Term) -> Term:
     factors = term.factors if isinstance(term, Product) else (term,)
-    return Product((Number(Fraction(number)), *factors))
+    return Product((Number(number), *factors))
 
 
 def _letter(term: Symbol, letters: Sequence[Symbol]) -> Iterator[Edit]:
@@ -156,13 +167,13 @@ def _letter(term: Symbol, letters: Sequence[Symbol]) -> Iterator[Edit]:
             continue
         same = other.glyph.letter == term.glyph.letter
         if (other.rows, other.cols) == (term.rows, term.cols):
-            yield Edit(other, f"{plain(other)} for {plain(term)}", 1 if same else 2, "letter", plain(other))
+            yield Edit(other, (other, " for ", term), 1 if same else 2, "letter", other)
         if (other.cols, other.rows) == (term.rows, term.cols) and other.rows != other.cols:
-            yield Edit(other.T, f"{plain(other.T)} for {plain(term)}", 2, "letter", plain(other))
+            yield Edit(other.T, (other.T, " for ", term), 2, "letter", other)
     if not term.symmetric:
-        yield Edit(term.T, f"{plain(term.T)} for {plain(term)}", 2, "transpose", plain(term.T))
+        yield Edit(term.T, (term.T, " for ", term), 2, "transpose", term.T)
     if term.rows == term.cols:
-        yield Edit(term.inv, f"{plain(term.inv)} for {plain(term)}", 2, "inverse", plain(term))
+        yield Edit(term.inv, (term.inv, " for ", term), 2, "inverse", term)
 
 
 def _around(term: Term, letters: Sequence[Symbol]) -> Iterator[Edit]:
@@ -173,11 +184,9 @@ def _around(term: Term, letters: Sequence[Symbol]) -> Iterator[Edit]:
     for factor in _factors(letters):
         size = shape_of(factor)
         if size and size[1] == shape[0]:
-            text = f"with {plain(factor)} in front of {plain(term)}"
-            yield Edit(Product((factor, term)), text, 3, "factor", plain(factor))
+            yield Edit(Product((factor, term)), ("with ", factor, " in front of ", term), 3, "factor", factor)
         if size and size[0] == shape[1]:
-            text = f"with {plain(factor)} after {plain(term)}"
-            yield Edit(Product((term, factor)), text, 3, "factor", plain(factor))
+            yield Edit(Product((term, factor)), ("with ", factor, " after ", term), 3, "factor", factor)
 
 
 def _factors(letters: Sequence[Symbol]) -> Iterator[Term]:
@@ -193,24 +202,22 @@ def _sum(parts: tuple[Term, ...], addends: Sequence[Term]) -> Iterator[Edit]:
     shape = shape_of(parts[0])
     for i, part in enumerate(parts):
         rest = (*parts[:i], *parts[i + 1 :])
-        text = plain(part.body if isinstance(part, Neg) else part)
-        flipped = part.body if isinstance(part, Neg) else Neg(part)
-        yield Edit(Sum(_changed(parts, i, flipped)), f"the other sign of {text}", 2, "sign", text)
-        yield Edit(rest[0] if len(rest) == 1 else Sum(rest), f"without {text}", 4, "drop", text)
+        body = part.body if isinstance(part, Neg) else part
+        flipped = body if isinstance(part, Neg) else Neg(part)
+        yield Edit(Sum(_changed(parts, i, flipped)), ("the other sign of ", body), 2, "sign", body)
+        yield Edit(rest[0] if len(rest) == 1 else Sum(rest), ("without ", body), 4, "drop", body)
     for addend in addends:
         if shape_of(addend) == shape:
-            yield Edit(Sum((*parts, addend)), f"with the addend {plain(addend)}", 4, "addend", plain(addend))
-            yield Edit(Sum((*parts, Neg(addend))), f"less {plain(addend)}", 4, "addend", plain(addend))
+            yield Edit(Sum((*parts, addend)), ("with the addend ", addend), 4, "addend", addend)
+            yield Edit(Sum((*parts, Neg(addend))), ("less ", addend), 4, "addend", addend)
 
 
-def _product(factors: tuple[Term, ...], letters: Sequence[Symbol]) -> Iterator[Edit]:
-    for i in range(len(factors)):
+def _product(factors: tuple[Term, ...]) -> Iterator[Edit]:
+    for i, factor in enumerate(factors):
         rest = (*factors[:i], *factors[i + 1 :])
         if rest:
-            yield Edit(
-                rest[0] if len(rest) == 1 else Product(rest), f"without the factor {plain(factors[i])}", 3, "drop"
-            )
+            shorter = rest[0] if len(rest) == 1 else Product(rest)
+            yield Edit(shorter, ("without the factor ", factor), 3, "drop", factor)
         if i + 1 < len(factors):
-            swapped = (*factors[:i], factors[i + 1], factors[i], *factors[i + 2 :])
-            text = f"{plain(factors[i])} and {plain(factors[i + 1])} swapped"
-            yield Edit(Product(swapped), text, 2, "swap")
+            swapped = (*factors[:i], factors[i + 1], factor, *factors[i + 2 :])
+            yield Edit(Product(swapped), (factor, " and ", factors[i + 1], " swapped"), 2, "swap")

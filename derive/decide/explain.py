@@ -22,7 +22,7 @@ ADDED = {
     "W": "Process noise adds its intensity.",
 }
 KINDS = {
-    "factor 2": "A factor 2 too many or too few: the gradient of a quadratic form has one, its completed square has none.",
+    "factor 2": "A factor 2 too many or too few: the gradient of a quadratic form has one, its square has none.",
     "swap": "Matrices do not commute: the order of the factors matters.",
     "order": "The inequality holds the other way round.",
     "strict": "Equality is possible, so the inequality is not strict.",

@@ -97,7 +97,10 @@ def _addends(proof: Sequence[Part]) -> list[Addend]:
 
 
 def _squares(proof: Sequence[Part]) -> list[Poly]:
-    return [p for part in proof for p in _polys(Lemma("", "", (), part.proof.positivity, part.proof.comparison))]
+    images = [part.image for part in proof if part.image is not None]
+    return images + [
+        p for part in proof for p in _polys(Lemma("", "", (), part.proof.positivity, part.proof.comparison))
+    ]
 
 
 def used(names: Iterable[str], items: Sequence[Item], theory: ClaimTheory) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import lru_cache
 
 from derive.claim import Answer, Counterexample, Verdict
@@ -17,14 +18,15 @@ from derive.decide.hypotheses import free_gains, inverses_in, names_in, not_need
 from derive.decide.obligations import Undefined, Unjustified, justify
 from derive.decide.order import prove_order, prove_trace_order
 from derive.decide.parts import Part, oriented, rule_of
+from derive.decide.signals import expanded, inside
 from derive.decide.workspace import Workspace
 from derive.derivation import Proof, claims, order_claim
 from derive.errors import InputError
 from derive.interpret.statement import Statement
 from derive.kernel import Poly, Rejected, identity
 from derive.matrix.refute import satisfy
-from derive.rules import Grid
-from derive.terms import Equation, lower, lower_trace
+from derive.rules import Grid, expect
+from derive.terms import Equation, Zero, lower, lower_trace
 from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["decide_matrix", "prove_statement"]
@@ -129,6 +131,8 @@ def _part(equation: Equation, work: Workspace) -> Part | None:
         return Part(rule, order=found) if found else None
     if equation.relation != "=":
         return None
+    if rule == "expectation":
+        return _expectation(equation, work)
     certificates = []
     for claim in claims(equation, rule, work.reading):  # type: ignore[arg-type]
         found = work.prove(claim.claim, claim.trace)
@@ -138,9 +142,21 @@ def _part(equation: Equation, work: Workspace) -> Part | None:
     return Part(rule, Proof(tuple(certificates)))
 
 
+def _expectation(equation: Equation, work: Workspace) -> Part | None:
+    """Prove an equation between expectations from the equations of the signals and their moments."""
+    for image in expanded(equation, work):
+        after = work.prove(expect(image, work.reading.context))
+        under = work.prove(inside(equation, work.reading) - image) if after else None
+        if after and under:
+            return Part("expectation", Proof((under, after)), image=image)
+    return None
+
+
 def _refute(equation: Equation, work: Workspace) -> Counterexample | None:
     """Search for a counterexample to one equation or inequality; blocks of an equation are tried one by one."""
     rule = rule_of(equation)
+    if rule == "expectation":
+        return _refute_expectation(equation, work)
     if rule == "gradient":
         (claim,) = claims(equation, "gradient", work.reading)
         return work.refute(claim.claim, trace=True, seconds=REFUTE)
@@ -161,12 +177,27 @@ def _refute(equation: Equation, work: Workspace) -> Counterexample | None:
     return None
 
 
+def _refute_expectation(equation: Equation, work: Workspace) -> Counterexample | None:
+    nothing = Zero("", "")
+    terms = [equation.lhs, equation.rhs][: 1 if equation.rhs == nothing else 2]
+    sides = [expanded(replace(equation, lhs=term, rhs=nothing), work) for term in terms]
+    if not all(sides):
+        return None
+    left, *right = (expect(images[0], work.reading.context) for images in sides)
+    return work.refute(left, right[0] if right else None, equation.relation, seconds=REFUTE)
+
+
 def _polys(equation: Equation, work: Workspace) -> list[Poly]:
     """Return the polynomials that an equation is about."""
     equation = oriented(equation, work.reading)
     rule = rule_of(equation)
     if rule in ("trace", "trace order"):
         return [lower_trace(side, work.reading) for side in (equation.lhs, equation.rhs)]
+    if rule == "expectation":
+        found = expanded(equation, work)
+        if not found:
+            expect(inside(equation, work.reading), work.reading.context)
+        return [expect(p, work.reading.context) for p in found]
     if rule == "gradient":
         return [c.claim for c in claims(equation, rule, work.reading)]
     grids: list[Grid] = [order_claim(equation, work.reading), lower(equation.lhs, work.reading)]

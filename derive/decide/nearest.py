@@ -7,8 +7,8 @@ first. For mistakes that are often made there is a sentence that explains them.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from derive.claim import Nearest
 from derive.decide.edits import Edit, edits
@@ -25,7 +25,7 @@ from derive.matrix.sample import sample
 from derive.terms import Dot, Equation, Expect, Symbol, Term, Trace, Transpose, walk
 from derive.theory.claims.base import ClaimTheory
 
-__all__ = ["nearest", "with_equations"]
+__all__ = ["Surroundings", "nearest", "with_equations"]
 
 SECONDS = 1.5  # in all
 TRIED = 12  # edits that are proved or not, after the random instances
@@ -33,34 +33,45 @@ POINTS = 2
 CROSS = ("N", "S")  # without this letter in a claim the noises are uncorrelated
 
 
-def nearest(statement: Statement, seconds: float = SECONDS) -> tuple[Nearest, str] | None:
+@dataclass(frozen=True)
+class Surroundings:
+    """The letters that a claim might have been written with, and exact instances at which formulas are tried."""
+
+    statement: Statement
+    letters: tuple[Symbol, ...]
+    points: tuple[Point, ...]
+
+    @classmethod
+    def of(cls, statement: Statement, more: Iterable[Symbol] = ()) -> Surroundings:
+        """Return the surroundings of a statement; ``more`` are letters that have to have a value."""
+        letters = tuple(_letters(statement))
+        everything = list(dict.fromkeys([*letters, *statement.symbols, *more]))
+        order = any(e.relation not in ("=", ":=") for e in statement.equations)
+        return cls(statement, letters, tuple(_points(_theory(statement, everything), everything, order)))
+
+    def holds(self, equations: Iterable[Equation]) -> bool:
+        """Tell whether equations and inequalities hold at every instance."""
+        return bool(self.points) and all(_holds(e, self.points) for e in equations)
+
+
+def nearest(around: Surroundings, seconds: float = SECONDS) -> tuple[Nearest, str] | None:
     """Search for the nearest true formula.
 
     Returns:
         The formula and a sentence that explains the mistake, or "" if there is none; None if no single edit is true.
     """
-    if len(statement.equations) != 1:
+    statement, deadline = around.statement, time.monotonic() + seconds
+    if len(statement.equations) != 1 or not around.points:
         return None
-    deadline = time.monotonic() + seconds
     (equation,) = statement.equations
-    letters = _letters(statement)
-    wide = _theory(statement, [*letters, *statement.symbols])
-    points = _points(wide, [*letters, *statement.symbols], equation)
-    if not points:
-        return None
-    tried = 0
-    seen: set[Equation] = set()
-    for edit, changed in _ordered(equation, letters):
-        if time.monotonic() > deadline or tried >= TRIED:
+    tried: set[Equation] = set()
+    for edit, changed in _ordered(equation, around.letters):
+        if time.monotonic() > deadline or len(tried) >= TRIED:
             return None
-        if changed in seen or not _holds(changed, points):
+        if changed in tried or _trivial(changed, equation) or not around.holds((changed,)):
             continue
-        seen.add(changed)
-        tried += 1
-        if _trivial(changed, equation):
-            continue
-        candidate = with_equations(statement, (changed,))
-        if prove_statement(candidate, min(1.0, deadline - time.monotonic())):
+        tried.add(changed)
+        if prove_statement(with_equations(statement, (changed,)), min(1.0, deadline - time.monotonic())):
             return Nearest(latex(changed), edit.text), sentence(edit, statement.theory.key)
     return None
 
@@ -77,10 +88,10 @@ def _ordered(equation: Equation, letters: Sequence[Symbol]) -> Iterator[tuple[Ed
             found.append((edit.cost + 2 * order, len(found), edit, replace(equation, **{side: edit.term})))
     if equation.relation in ("⪰", "≻", "≥", ">"):
         turned = Equation(equation.rhs, equation.relation, equation.lhs)
-        found.append((1, len(found), Edit(equation.lhs, "the other way round", 1, "order"), turned))
+        found.append((1, len(found), Edit(equation.lhs, ("the other way round",), 1, "order"), turned))
         if equation.relation in ("≻", ">"):
             weak = replace(equation, relation={"≻": "⪰", ">": "≥"}[equation.relation])
-            found.append((0, len(found), Edit(equation.lhs, "not strict", 0, "strict"), weak))
+            found.append((0, len(found), Edit(equation.lhs, ("not strict",), 0, "strict"), weak))
     for _, _, edit, changed in sorted(found, key=lambda item: item[:2]):
         yield edit, changed
 
@@ -148,7 +159,7 @@ def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Sta
     return replace(statement, equations=equations, symbols=symbols, theory=_theory(statement, symbols))
 
 
-def _points(theory: ClaimTheory, letters: Sequence[Symbol], equation: Equation) -> list[Point]:
+def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool) -> list[Point]:
     """Return instances at which edits are tried: of the equations, or of everything for an inequality."""
     work = Workspace(theory, time.monotonic() + 1.0)
     problem = work.problem()
@@ -158,9 +169,11 @@ def _points(theory: ClaimTheory, letters: Sequence[Symbol], equation: Equation) 
     polys = [Poly({((), (s.letter,)): 1}, s.rows, s.cols) for s in letters if s.name in known and not s.scalar]
     scalars = sorted({s.name for s in letters if s.scalar})
     polys += [Poly({((s,), ()): 1}, "", "") for s in scalars]
-    found: list[Instance] = sample(replace(problem, facts={}), polys, POINTS)
-    if equation.relation != "=":
+    found: list[Instance] = []
+    if order:
         found = instances(problem, polys, POINTS)
+    else:
+        found = sample(replace(problem, facts={}), polys, POINTS)
     return [Point(i, work.reading) for i in found]
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from derive.claim import Counterexample
 from derive.decide.ground import GENERIC, Introduced, generic, ratio
+from derive.decide.order import prove_order
 from derive.decide.workspace import Workspace
 from derive.kernel import Poly, Rejected, identity
 from derive.terms import Inverse, Neg, Product, Term, Transpose, lower
@@ -89,15 +90,12 @@ def _by_sign(poly: Poly, work: Workspace) -> bool:
     """Prove M ≻ 0 and introduce its inverse."""
     if work.reading.context.alphabet.transpose(poly) != poly or not work.reading.context.is_real(poly):
         return False
-    for name in list(work.reading.inverses.values()):
-        matrix = next(p for p, n in work.reading.inverses.items() if n == name)
-        if any(name in w for _, w in poly.terms):
-            work.inverse_is_positive(matrix)
-    proof = work.positive(((poly,),), strict=True)
-    if proof is None:
+    found = prove_order(((poly,),), True, work)
+    if found is None or found.positivity is None:
         return False
     letter = work.fresh()
-    work.take(Introduced(letter, poly, because=work.lemma(f"matrix of {letter} > 0", poly, proof, strict=True)))
+    fact = work.lemma(f"matrix of {letter} > 0", poly, found.positivity, strict=True)
+    work.take(Introduced(letter, poly, because=fact))
     return True
 
 
@@ -169,6 +167,7 @@ def _candidates(poly: Poly, work: Workspace, depth: int) -> Iterator[Poly | None
     yield _word(poly, work, depth)
     yield from _multiples(poly, work, depth)
     yield from _exchanged(poly, work, depth)
+    yield from _woodbury(poly, work, depth)
 
 
 def _rewritten(poly: Poly, work: Workspace, depth: int) -> Poly | None:
@@ -247,6 +246,26 @@ def _exchanged(poly: Poly, work: Workspace, depth: int) -> Iterator[Poly | None]
             found = work.inverse(inner)
         if found is not None:
             yield (identity(poly.rows) - x * found * y).scale(1 / c)
+
+
+def _woodbury(poly: Poly, work: Workspace, depth: int) -> Iterator[Poly | None]:
+    """(X + c U Z^-1 V)^-1 = X^-1 - X^-1 U (Z / c + V X^-1 U)^-1 V X^-1."""
+    if depth > 1:
+        return
+    for z, name in list(work.reading.inverses.items()):
+        ours = {k: c for k, c in poly.terms.items() if k[1].count(name) == 1 and not k[0]}
+        if len(ours) != 1 or len(poly.terms) == 1:
+            continue
+        (((_, word), c),) = ours.items()
+        at = word.index(name)
+        u, v = Poly({((), word[:at]): 1}, poly.rows, z.rows), Poly({((), word[at + 1 :]): 1}, z.cols, poly.cols)
+        x = invert(Poly({k: d for k, d in poly.terms.items() if k not in ours}, poly.rows, poly.cols), work, depth + 1)
+        if x is None:
+            continue
+        inner = _reduced(z.scale(1 / c) + v * x * u, work, work.relations_on([z, x, u, v]))
+        found = invert(inner, work, depth + 1)
+        if found is not None:
+            yield x - x * u * found * v * x
 
 
 def _any_multiple(poly: Poly, work: Workspace, depth: int) -> bool:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from derive.decide.squares import usual_squares
 from derive.decide.workspace import Workspace
 from derive.derivation import Proof
 from derive.kernel import ANY, Certificate, Poly, Rejected, Term, replay
@@ -71,7 +72,14 @@ def prove_order(grid: Grid, strict: bool, work: Workspace, depth: int = 0) -> Pr
     """Search for a proof of G ⪰ 0, or G ≻ 0."""
     for form in _forms(grid, work):
         _know_inverses(form, work)
+        if depth < DEPTH:
+            _know_letters(form, work, depth)
         for squares in _squares(form, work, depth):
+            proof = _by_squares(grid, squares, strict, work)
+            if proof:
+                return Proof(positivity=proof)
+    if len(grid) == len(grid[0]) == 1:
+        for squares in usual_squares(grid[0][0], strict, work):
             proof = _by_squares(grid, squares, strict, work)
             if proof:
                 return Proof(positivity=proof)
@@ -101,12 +109,47 @@ def _know_inverses(grid: Grid, work: Workspace) -> None:
             work.inverse_is_positive(poly)
 
 
+def _know_letters(grid: Grid, work: Workspace, depth: int) -> None:
+    """Take up X ⪰ 0 for the symmetric letters that occur and of which nothing is known, if it can be proved."""
+    context = work.reading.context
+    known = {f.matrix[0][0] for f in context.facts.values() if f.kind in ("psd", "pd") and len(f.matrix) == 1}
+    letters = sorted({a for row in grid for p in row for _, w in p.terms for a in w if context.alphabet.flip(a) == a})
+    for letter in letters:
+        poly = Poly({((), (letter,)): 1}, *context.alphabet.shape(letter))
+        if poly not in known and grid != ((poly,),) and _is_defined(letter, work):
+            found = prove_order(((poly,),), False, work, depth + 1)
+            if found and found.positivity:
+                work.lemma(f"{letter} >= 0", poly, found.positivity)
+
+
+def _is_defined(letter: str, work: Workspace) -> bool:
+    """Tell whether an equation gives a letter as an expression in others."""
+    return any(((), (letter,)) in p.terms for p in work.equations(False).relations.values())
+
+
 def _squares(form: Grid, work: Workspace, depth: int) -> Iterator[tuple[Square, ...]]:
     context = work.reading.context
     yield from proposals(form, context)
     if len(form) == len(form[0]) == 1:
         yield from _completed(form[0][0], work, depth)
         yield from _dominated(form[0][0], work)
+        yield from _inverses(form[0][0], work)
+
+
+def _inverses(poly: Poly, work: Workspace) -> Iterator[tuple[Square, ...]]:
+    """N^-1 - M^-1 = M^-1 (E + E N^-1 E) M^-1 for M = N + E, where E is a sum of squares."""
+    context, one = work.reading.context, Fraction(1)
+    names = {c: w for (m, w), c in poly.terms.items() if not m and len(w) == 1}
+    matrices = {(name,): p for p, name in work.reading.inverses.items()}
+    if len(poly.terms) != 2 or set(names) != {1, -1} or not set(names.values()) <= set(matrices):
+        return
+    n, m = matrices[names[one]], matrices[names[-one]]
+    fact, x = work.inverse_is_positive(n), work.inverse(m)
+    if fact is None or x is None:
+        return
+    for squares in proposals(((m - n,),), context):
+        moved = tuple(replace(s, factor=((x * s.factor[0][0],),)) for s in squares)
+        yield (*moved, Square(one, (), ((x * (m - n),),), fact))
 
 
 def _dominated(poly: Poly, work: Workspace) -> Iterator[tuple[Square, ...]]:

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from derive.decide.order import TraceOrder, check_trace_order
+from derive.decide.signals import check_expectation, has_expectation
 from derive.derivation import Proof, Step, check
-from derive.kernel import Rejected
+from derive.kernel import Poly, Rejected
 from derive.terms import Equation, Gradient, Neg, Number, Product, Reading, Sum, Term, Trace, Zero, lower, lower_trace
 
 __all__ = ["Part", "Rule", "is_trace", "oriented", "replay_part", "rule_of"]
 
-Rule = Literal["identity", "trace", "gradient", "positivity", "comparison", "trace order"]
+Rule = Literal["identity", "trace", "gradient", "positivity", "comparison", "trace order", "expectation"]
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class Part:
     rule: Rule
     proof: Proof = field(default_factory=Proof)
     order: TraceOrder | None = None
+    image: Poly | None = None  # what an expectation is that of, in signals with declared moments
 
 
 def replay_part(part: Part, equation: Equation, reading: Reading) -> None:
@@ -33,7 +35,16 @@ def replay_part(part: Part, equation: Equation, reading: Reading) -> None:
         claim = lower_trace(equation.lhs - equation.rhs, reading)
         check_trace_order(part.order, claim, equation.relation == ">", reading.context)
         return
-    if part.order is not None or part.rule not in ("identity", "trace", "gradient", "positivity", "comparison"):
+    if part.rule == "expectation":
+        if part.image is None or part.order is not None or part.proof != Proof(part.proof.identities):
+            raise Rejected("an equation between expectations has a proof of its own")
+        check_expectation(equation, part.image, part.proof.identities, reading)
+        return
+    if (
+        part.order is not None
+        or part.image is not None
+        or part.rule not in ("identity", "trace", "gradient", "positivity", "comparison")
+    ):
         raise Rejected("the proof is of another kind than the rule")
     check(Step("claim", equation, part.rule, (), part.proof), reading, {})
 
@@ -86,6 +97,8 @@ def rule_of(equation: Equation) -> Rule:
         return "trace order"
     if isinstance(equation.lhs, Gradient):
         return "gradient"
+    if has_expectation(equation) and not is_trace(equation.lhs):
+        return "expectation"
     return "trace" if is_trace(equation.lhs) else "identity"
 
 

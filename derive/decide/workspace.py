@@ -181,9 +181,11 @@ class Workspace:
     ) -> Positivity | None:
         """Search for a proof of G ⪰ 0, or G ≻ 0."""
         context = self.reading.context
+        polys = [p for row in grid for p in row] + [f for s in squares or () for row in s.factor for f in row]
+        polys += [h for s in squares or () for row in context.facts[s.fact].matrix for h in row]
         return prove_positive(
             grid,
-            replace(context, relations=self.relations_on(p for row in grid for p in row)),
+            replace(context, relations=self.relations_on(polys)),
             squares,
             strict=strict,
             inverse=inverse,

@@ -136,6 +136,8 @@ def _ratio(a: Poly, b: Poly) -> Fraction | None:
 def proposals(claim: Grid, context: Context) -> Iterator[tuple[Square, ...]]:
     """Iterate over sums of squares read off the claim: letters only, then with the facts on sums taken out first."""
     known = {n: f for n, f in context.facts.items() if f.kind in ("psd", "pd") and len(f.matrix) == 1}
+    definite = {f.matrix for f in known.values() if f.kind == "pd"}
+    known = {n: f for n, f in known.items() if f.kind == "pd" or f.matrix not in definite}
     sums = [n for n, f in known.items() if len(f.matrix[0][0].terms) > 1]
     letters = [n for n, f in known.items() if len(f.matrix[0][0].terms) == 1]
     letters.sort(key=lambda n: _is_identity(known[n]))
