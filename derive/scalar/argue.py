@@ -180,15 +180,15 @@ class _Search:
     def _undecided(self, poly: Any) -> Any:
         """Return the first factor of odd power whose sign changes, or is not known."""
         odd = [f for f, e in self.ring.factors(poly)[1] if e % 2]
-        for f in odd:
-            if {1, -1} <= self._signs(f):
-                return f
-        for f in odd:
-            try:
-                sign_of(self.known, f)
-            except Split:
-                return f
-        raise Unknown("a sign that is not decided")
+        unknown = [f for f in odd if not self._has_sign(f)]
+        return next((f for f in unknown if {1, -1} <= self._signs(f)), (*unknown, poly)[0])
+
+    def _has_sign(self, poly: Any) -> bool:
+        try:
+            sign_of(self.known, poly)
+        except Split:
+            return False
+        return True
 
     def reason(self, relation: str, poly: Any) -> Reason:
         """Prove a polynomial ≥ 0, > 0 or ≠ 0."""
@@ -252,9 +252,11 @@ class _Search:
             return Reason("z3", used=used)
         if relation == ">" and known_fact(self.known, poly, "≥"):
             return Reason("apart", factors=(Factor(plain, 1, 1, self._by_z3("≠", poly)),))
-        sign = self._certificate(relation, plain, {n: facts[n] for n in used})
-        if sign is not None:
-            return Reason("sign", sign=sign, used=used)
+        wider = tuple(n for n, (kind, _) in facts.items() if n in used or kind == "positive")
+        for names in (used, wider) if len(wider) > len(used) else (used,):
+            sign = self._certificate(relation, plain, {n: facts[n] for n in names})
+            if sign is not None:
+                return Reason("sign", sign=sign, used=tuple(n for n in names if n in _named(sign)))
         choices = [i for i in range(len(self.known.alternatives)) if f"choice {i}" in found.core]
         if choices and self.depth < DEPTH:
             raise Choose(choices[0])
@@ -313,6 +315,10 @@ def _sign(
         total = total + sign_product(product, facts)[0]
     terms = ideal.member(total)
     return None if terms is None else Sign(claim, relation, tuple(found), terms)
+
+
+def _named(sign: Sign) -> set[str]:
+    return {name for p in sign.products for name in p.facts} | {t.relation for t in sign.terms}
 
 
 def _polys(facts: Mapping[str, Fact], relations: Mapping[str, Poly]) -> list[Poly]:

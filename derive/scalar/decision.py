@@ -31,10 +31,12 @@ from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.reasons import bearing_names, letters_of, used_names
 from derive.scalar.system import ROOTS, Split, System, names_in, system
-from derive.terms import Equation, Symbol
+from derive.terms import Equation, Symbol, walk
+from derive.theory.claims.base import split_index
 
 __all__ = ["decide_scalar"]
 
+TIMES = ("t", "τ", "t0")
 FIRST, MORE = 60, 600  # instances at which a claim is evaluated before and after a proof is tried
 POINTS = 1_000  # points at which the first instances are looked for
 FEW = 200  # points at which instances are looked for before z3 is asked whether there are any
@@ -67,6 +69,7 @@ class Work:
     instances: Instances
     deadline: float
     shown: list[str] = field(default_factory=list[str])
+    moving: str = ""  # why values at one instant refute nothing
 
     @classmethod
     def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
@@ -74,7 +77,7 @@ class Work:
         names = names_in(statement)
         ring = FlintRing([*names, *ROOTS])
         known = system(statement, ring, (), without)
-        return cls(statement, ring, names, known, Instances(known, ring, names), deadline, _shown(statement, known))
+        return cls(statement, ring, names, known, Instances(known, ring, names), deadline, _shown(statement, known), moving(statement))
 
     def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
         """Iterate over the instances that contradict the statement."""
@@ -86,7 +89,14 @@ class Work:
                 yield found
 
     def failure(self, instance: Instance) -> Failure | None:
-        """Return how an instance contradicts the statement, if it does."""
+        """Return how an instance contradicts the statement, if it does.
+
+        A covariance that varies is taken positive: it starts so, and stays so.
+        """
+        symbols = self.statement.theory.theory.symbols
+        varying = [n for n in letters_of(self.statement) if n in symbols and symbols[n].args]
+        if self.moving or any(instance.values.get(n, 1) == 0 for n in varying):
+            return None
         for i, equation in enumerate(self.statement.equations):
             try:
                 answer, left, right = holds(equation, instance.values)
@@ -130,6 +140,17 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
     return _proved_or_not(work, explain)
 
 
+def moving(statement: Statement) -> str:
+    """Return why free values of letters may not be those of one solution: several times, or unlike indices."""
+    symbols = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol)]
+    if any(n.args not in ((), ("t",)) or n.name in TIMES for n in symbols):
+        return "a function of time is not refuted by values at one instant"
+    known = statement.theory.theory.symbols
+    indices = {split_index(n.name)[1] for n in symbols if n.name in known and split_index(n.name)[0] != n.name}
+    kinds = {"" if i.isdigit() else i[:1] for i in indices if i}
+    return "indices that no step connects" if len(kinds) > 1 else ""
+
+
 def _satisfiable(work: Work) -> None:
     """Make sure that some numbers satisfy all hypotheses."""
     if work.known.impossible:
@@ -166,6 +187,8 @@ def _searched(work: Work, why: str) -> Answer:
 
 def _open(work: Work, why: str) -> Answer:
     """Answer with how often the claim was enclosed, if it could be evaluated."""
+    if work.moving:
+        return Answer(Verdict.undecided, assumed=work.statement.assumed, notes=(work.moving, why))
     enclosed = 0
     for instance in work.instances.first(FIRST, POINTS):
         try:

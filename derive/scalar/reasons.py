@@ -10,7 +10,7 @@ from derive.latex import plain
 from derive.scalar.proof import Proof, Reason, Step, Turned, leaves
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.system import System
-from derive.terms import Symbol, Term, walk
+from derive.terms import Dot, Symbol, Term, walk
 
 __all__ = ["bearing_names", "letters_of", "used_names"]
 
@@ -22,6 +22,8 @@ def letters_of(statement: Statement) -> set[str]:
 
 def _names(term: Term) -> Iterator[str]:
     for node in walk(term):
+        if isinstance(node, Dot):
+            yield from ("d/dt " + n.name for n in walk(node) if isinstance(n, Symbol) and n.args)
         if isinstance(node, Symbol):
             try:
                 yield name_of(node)
