@@ -252,8 +252,13 @@ class Reader(Operators):
         """Read an operand with its scripts; a letter and a group behind it may be one factor or two."""
         start = self.look()
         node = self.atom()
+        before = node.factors[:-1] if isinstance(node, Times) else ()
+        node = node.factors[-1] if isinstance(node, Times) else node
         sub, sup, exponents = self.marks()
-        node = self.indexed(node, sub, sup, start)
+        return [*before, *self._applied(self.indexed(node, sub, sup, start), exponents, start)]
+
+    def _applied(self, node: Node, exponents: list[Exponent], start: Token) -> list[Node]:
+        """Read the group behind a letter as its arguments, or as a factor of its own."""
         token = self.look()
         if not isinstance(node, Name) or token.kind != "delimiter" or not self.starts_operand(token):
             return [self._raised(node, exponents, start)]
@@ -270,6 +275,8 @@ class Reader(Operators):
 
     def _applies(self, head: Name, group: Fenced) -> bool:
         found = reading(head, group, self.functions)
+        if isinstance(group.body, Name) and group.body.sup and self.look().text in ("^", "'"):
+            return False  # brackets that make room for an exponent: F (P^-)^{-1}
         if found is Reading.BOTH:
             shown = head.letter if len(head.letter) == 1 else "\\" + head.letter
             self.ambiguous(head, f"a product, {shown} \\cdot (...)", f"{shown} as a function")

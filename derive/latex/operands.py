@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from derive.latex.names import Names
 from derive.latex.syntax import (
+    Barred,
     Blank,
     Cases,
     Digits,
@@ -124,14 +125,18 @@ class Operands(Names):
                 self.fail("an operator or the } of this {")
         return node
 
-    def group(self) -> Node:
-        """Read braces that only group: what they hold must be seen without them."""
+    def group(self, styled: bool = False) -> Node:
+        r"""Read braces that only group: what they hold must be seen without them.
+
+        A script behind a product in bold letters is one of its last letter, as the page shows it: \mathbf{PA}^\top.
+        """
         start, before = self.look(), self.tokens[self.at - 1] if self.at else self.tokens[-1]
         node = self.argument()
         after = self.look()
         inside = self.starts_operand(after) or after.text in ("^", "_", "'", "/") or _ends_operand(before)
         hidden = isinstance(node, Plus) and (inside or before.text in ("-", "/", "cdot", "times", "*"))
-        if hidden or (isinstance(node, Times) and after.text in ("^", "_", "'")):
+        product = isinstance(node, Times) and not (styled and isinstance(node.factors[-1], Name))
+        if hidden or (product and after.text in ("^", "_", "'")):
             self.ambiguous(start, "a group in brackets ( )", "no group, as braces do not show")
         return node
 
@@ -234,7 +239,7 @@ class Operands(Names):
         r"""Read ``\mathbf{x}``: what it holds, without the style."""
         start = self.take()
         if self.look().text == "{" and self.look().kind == "sign":
-            node = self.upright_name() or self.group()
+            node = self.upright_name() or self.group(styled=True)
         else:
             with self.deeper(start):
                 node = self.atom()
@@ -271,6 +276,8 @@ class Operands(Names):
             return replace(node, accents=(*node.accents, accent), span=self.span(start))
         if accent in DOTS:
             return Dotted(node, DOTS[accent], span=self.span(start))
+        if accent == "bar":
+            return Barred(node, span=self.span(start))
         self.fail(f"a letter under \\{start.text}", start)
 
     def _root(self) -> Node:

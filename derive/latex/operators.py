@@ -22,7 +22,7 @@ from derive.latex.syntax import (
     Times,
 )
 from derive.latex.tokens import Token
-from derive.latex.vocabulary import FUNCTION_COMMANDS, OPEN_FUNCTIONS, ROMAN, TRIGONOMETRIC
+from derive.latex.vocabulary import FUNCTION_COMMANDS, MOMENTS, OPEN_FUNCTIONS, ROMAN, TRIGONOMETRIC
 
 DIFFERENTIALS = (Name("d"), Name("partial"))
 THROUGH = frozenset(("det", "tr", "exp"))  # f(X)^T is f(X^T), and for det any power
@@ -186,15 +186,19 @@ class Operators(Operands):
             body = self.product()
         return Summed(body, index, lower, upper, start.text, span=self.span(start))
 
-    def at_differential(self) -> bool:
-        r"""Return whether a differential stands here: d tau, \mathrm d tau, {\rm d} tau."""
+    def at_differential(self, first: bool = False) -> bool:
+        r"""Return whether a differential stands here: d tau, \mathrm d tau, {\rm d} tau.
+
+        It is none if its letter is applied or raised, unless it comes first behind the sign.
+        """
         i = self._behind_d(self.at)
         if i is None:
             return False
         variable, after = self.tokens[i], self.tokens[min(i + 1, len(self.tokens) - 1)]
         if variable.kind != "letter" or (variable.text == "d" and after.kind == "letter"):
             return False
-        return after.text not in ("^", "'", "(")
+        applied = after.text == "(" and variable.text not in MOMENTS
+        return first or not (applied or after.text in ("^", "'"))
 
     def _behind_d(self, at: int) -> int | None:
         """Return the place behind a d of a differential, or None."""
@@ -220,7 +224,7 @@ class Operators(Operands):
         lower, upper = self.limits()
         outer = self.integral, self.numerator
         with self.deeper(start):
-            if self.at_differential():
+            if self.at_differential(first=True):
                 variable = self.differential()
                 body = self.product() if self.starts_operand(self.look()) and not self.at_differential() else ONE
             else:

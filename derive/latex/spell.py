@@ -12,6 +12,7 @@ from fractions import Fraction
 from derive.latex.application import Reading, reading
 from derive.latex.syntax import (
     Applied,
+    Barred,
     Blank,
     Called,
     Cases,
@@ -152,16 +153,18 @@ def _plus(node: Plus) -> str:
 
 
 def _times(node: Times) -> str:
-    text = _spell(node.factors[0])
-    for left, right in zip(node.factors, node.factors[1:], strict=False):
-        piece = _spell(right)
+    pieces = [_closed(f) if isinstance(f, Called) else _spell(f) for f in node.factors[:-1]] + [
+        _spell(node.factors[-1])
+    ]
+    text = pieces[0]
+    for left, right, piece in zip(node.factors, node.factors[1:], pieces[1:], strict=False):
         text += (r" \cdot " if _needs_sign(left, right, piece) else " ") + piece
     return text
 
 
 def _needs_sign(left: Node, right: Node, piece: str) -> bool:
     """Return whether two factors side by side would be read as something else."""
-    if piece[0].isdigit() or Name("d") in (left, right):
+    if piece[0].isdigit() or left == Name("d"):
         return True
     group = _core(right)
     head = _core(left)
@@ -205,11 +208,24 @@ def _listed(node: Listed) -> str:
 
 
 def _called(node: Called) -> str:
+    """Write a function; what has something below it acts on the product behind it."""
+    body = node.arguments[0]
+    single = len(node.arguments) == 1 and not isinstance(body, Plus)
+    if node.function not in OPEN_FUNCTIONS or not single or not (node.sub is not None or node.function == "lim"):
+        return _closed(node)
+    text = _spell(body)
+    return _closed(node) if text.startswith((r"\{", r"\left\{")) else f"{_function(node)} {text}"
+
+
+def _function(node: Called) -> str:
     name = {"argmin": r"arg\,min", "argmax": r"arg\,max"}.get(node.function, node.function)
     text = rf"\operatorname{{{name}}}" if node.function in OPERATORS else "\\" + name
-    text += f"_{{{_spell(node.sub)}}}" if node.sub is not None else ""
-    braces = node.function in OPEN_FUNCTIONS
-    return text + _fence(Listed(node.arguments), *(FENCES["{"] if braces else FENCES["("]))
+    return text + (f"_{{{_spell(node.sub)}}}" if node.sub is not None else "")
+
+
+def _closed(node: Called) -> str:
+    """Write a function with brackets around its arguments."""
+    return _function(node) + _fence(Listed(node.arguments), *FENCES["{" if node.function in OPEN_FUNCTIONS else "("])
 
 
 # ------------------------------------------------------------------------------------------------ operators
@@ -279,6 +295,7 @@ SPELLINGS: Mapping[type[Node], Callable[..., str]] = {
     Expected: lambda node: r"\mathbb{E}" + _fence(node.body, "[", "]"),
     Given: lambda node: rf"{_spell(node.body)} \mid {_spell(node.condition)}",
     Differentiated: _differentiated,
+    Barred: lambda node: rf"\bar{{{_spell(node.body)}}}",
     Dotted: _dotted,
     Summed: _summed,
     Integrated: _integrated,

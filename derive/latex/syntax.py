@@ -181,6 +181,13 @@ class Dotted(Node):
 
 
 @dataclass(frozen=True)
+class Barred(Node):
+    """A bar over a group that is no single letter: a mean, or a complex conjugate."""
+
+    body: Node
+
+
+@dataclass(frozen=True)
 class Summed(Node):
     """A sum or product over an index (``sign`` is "sum" or "prod"), with bounds as far as they are written."""
 

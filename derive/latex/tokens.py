@@ -111,7 +111,7 @@ def _raw(source: str) -> Iterator[Token]:
         found = PATTERN.match(source, position)
         assert found is not None
         kind, text, start, position = found.lastgroup or "other", found[0], position, found.end()
-        if kind == "space":
+        if kind == "space" or (text == "\\" and position == len(source)):
             continue
         if unicodedata.combining(source[position : position + 1] or " "):
             tokens, position = _unicode(source, start)
@@ -208,6 +208,8 @@ def _unicode(source: str, start: int) -> tuple[list[Token], int]:
     char, end = source[start], start + 1
     while end < len(source) and end < start + 4 and unicodedata.combining(source[end]):
         end += 1
+    if char.isascii() and end == start + 1:
+        raise _meaningless(char, start)
     if char in INVISIBLE:
         return [], end
     if char in CHARACTERS and end == start + 1:
