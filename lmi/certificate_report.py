@@ -9,7 +9,7 @@ from lmi.certificate import Bounds, Certificate, Check, Interval
 
 __all__ = ["above", "at_least", "at_most", "ends", "proved_lines", "rejected_line"]
 
-DIGITS = 30
+DIGITS = 32
 """Most significant digits printed."""
 
 FEWEST = 10
