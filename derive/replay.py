@@ -96,10 +96,10 @@ def _no_constant(name: str) -> Any:
 
 
 def verify_data(data: Any, path: str) -> Report:
-    """Replay a derivation or a single identity certificate."""
+    """Replay a derivation, a single identity certificate or the certificate of a claim."""
     schema = a_dict(data, "file").get("schema")
     if schema == SCHEMAS["identities"]:
-        return verify_certificate(data, path)
+        return verify_claim(data, path) if "latex" in data else verify_certificate(data, path)
     if schema != SCHEMA:
         raise InputError(f"schema: expected {SCHEMA} or {SCHEMAS['identities']}, got {shown(schema)}")
     document = document_from_json(data)
@@ -168,6 +168,18 @@ def verify_certificate(data: Any, path: str) -> Report:
     except Rejected as error:
         outcome = Outcome("certificate", False, str(error))
     return Report(path, SCHEMAS["identities"], "", theory.key, 1, (_as_shown(outcome, shows, prints),))
+
+
+def verify_claim(data: Any, path: str) -> Report:
+    """Replay the certificate of a claim: its LaTeX is read again in the installed theory."""
+    from derive.decide.certificate import replay_claim
+
+    outcome = Outcome("claim", True)
+    try:
+        replay_claim(data)
+    except Rejected as error:
+        outcome = Outcome("claim", False, str(error))
+    return Report(path, SCHEMAS["identities"], "", shown(data["theory"]).strip("'"), 1, (outcome,))
 
 
 def taught(theory: Theory) -> Reading:

@@ -11,9 +11,24 @@ from dataclasses import dataclass, fields, replace
 from fractions import Fraction
 
 from derive.latex.plain import plain
-from derive.terms import Block, Dot, Expect, Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose
+from derive.terms import (
+    Block,
+    Dot,
+    Expect,
+    Identity,
+    Inverse,
+    Neg,
+    Number,
+    Product,
+    Sum,
+    Symbol,
+    Term,
+    Transpose,
+    Zero,
+    walk,
+)
 
-__all__ = ["Edit", "Shape", "edits", "shape_of"]
+__all__ = ["Edit", "Shape", "edits", "shape_of", "tidy"]
 
 Shape = tuple[str, str]
 
@@ -72,7 +87,7 @@ def shape_of(term: Term) -> Shape | None:
 
 
 def edits(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
-    """Iterate over the edits of a term at one place, in no particular order.
+    """Iterate over the edits of a term at one place, or at all places where the same piece stands.
 
     Args:
         term: the formula.
@@ -80,16 +95,63 @@ def edits(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Ite
         addends: the terms that may be added to a sum.
     """
     wanted = shape_of(term)
-    for edit in _at(term, letters, addends):
+    for edit in (*_at(term, letters, addends, True), *_everywhere(term, letters)):
         if shape_of(edit.term) == wanted and edit.term != term:
             yield edit
 
 
-def _at(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
-    yield from _here(term, letters, addends)
+def _at(term: Term, letters: Sequence[Symbol], addends: Sequence[Term], whole: bool) -> Iterator[Edit]:
+    """Iterate over the edits of a term; ``whole`` if it is no factor, so that it may become a sum."""
+    yield from _here(term, letters, addends, whole)
     for rebuild, child in _places(term):
-        for edit in _at(child, letters, addends):
+        inner = not isinstance(term, (Product, Transpose, Sum))
+        for edit in _at(child, letters, addends, inner):
             yield replace(edit, term=rebuild(edit.term))
+
+
+def _everywhere(term: Term, letters: Sequence[Symbol]) -> Iterator[Edit]:
+    """Iterate over edits of a piece that stands at several places, made at all of them."""
+    counts: dict[Term, int] = {}
+    for piece in walk(term):
+        counts[piece] = counts.get(piece, 0) + 1
+    for piece in (p for p, count in counts.items() if count > 1 and isinstance(p, (Symbol, Sum, Transpose))):
+        for edit in _here(piece, letters, (), False):
+            if edit.kind in ("letter", "transpose", "inverse", "plus", "minus", "swap"):
+                yield replace(edit, term=_replaced(term, piece, edit.term), words=(*edit.words, " everywhere"))
+        if isinstance(piece, Sum):
+            turned = _replaced(term, piece, piece.T)
+            yield Edit(turned, ("the transpose of ", piece, " everywhere"), 3, "transpose", piece.T)
+
+
+def _replaced(term: Term, piece: Term, new: Term) -> Term:
+    """Put another term in the place of a piece, wherever it stands."""
+    if term == piece:
+        return new
+    if isinstance(term, Block):
+        return Block(tuple(tuple(_replaced(t, piece, new) for t in row) for row in term.rows))
+    values = {f.name: getattr(term, f.name) for f in fields(term)}  # type: ignore[arg-type]
+    for name, value in values.items():
+        if isinstance(value, Term):
+            values[name] = _replaced(value, piece, new)
+        elif isinstance(value, tuple):
+            values[name] = tuple(_replaced(v, piece, new) if isinstance(v, Term) else v for v in value)
+    return tidy(replace(term, **values))  # type: ignore[type-var]
+
+
+def tidy(term: Term) -> Term:
+    """Leave out what cancels: two transposes or signs, a factor 1, brackets around a product in a product."""
+    match term:
+        case Transpose(Transpose(body)) | Neg(Neg(body)) | Inverse(Inverse(body)):
+            return body
+        case Product(factors):
+            flat = [g for f in factors for g in (f.factors if isinstance(f, Product) else (f,))]
+            kept = [f for f in flat if f != Number(Fraction(1))] or flat[:1]
+            return kept[0] if len(kept) == 1 else Product(tuple(kept))
+        case Sum(addends):
+            flat = tuple(g for a in addends for g in (a.addends if isinstance(a, Sum) else (a,)))
+            return flat[0] if len(flat) == 1 else Sum(flat)
+        case _:
+            return term
 
 
 def _places(term: Term) -> Iterator[tuple[Callable[[Term], Term], Term]]:
@@ -104,27 +166,21 @@ def _places(term: Term) -> Iterator[tuple[Callable[[Term], Term], Term]]:
     for f in fields(term):  # type: ignore[arg-type]
         value = getattr(term, f.name)
         if isinstance(value, Term):
-            yield (lambda new, name=f.name: replace(term, **{name: new})), value  # type: ignore[type-var]
+            yield (lambda new, name=f.name: tidy(replace(term, **{name: new}))), value  # type: ignore[type-var]
         elif isinstance(value, tuple) and value and isinstance(value[0], Term):
             for i, child in enumerate(value):
-                yield (lambda new, name=f.name, v=value, i=i: _rebuilt(term, name, v, i, new)), child
+                yield (lambda new, name=f.name, v=value, i=i: _with(term, name, _changed(v, i, new))), child
 
 
-def _rebuilt(term: Term, name: str, values: tuple[Term, ...], at: int, new: Term) -> Term:
-    """Put a child in its place; a product in a product and a sum in a sum are flattened, a factor 1 is left out."""
-    if isinstance(term, Product) and new == Number(Fraction(1)) and len(values) > 1:
-        rest = (*values[:at], *values[at + 1 :])
-        return rest[0] if len(rest) == 1 else Product(rest)
-    inner = new.factors if isinstance(term, Product) and isinstance(new, Product) else (new,)
-    inner = new.addends if isinstance(term, Sum) and isinstance(new, Sum) else inner
-    return replace(term, **{name: (*values[:at], *inner, *values[at + 1 :])})  # type: ignore[type-var]
+def _with(term: Term, name: str, values: tuple[Term, ...]) -> Term:
+    return tidy(replace(term, **{name: values}))  # type: ignore[type-var]
 
 
 def _changed(values: tuple, at: int, new) -> tuple:
     return (*values[:at], new, *values[at + 1 :])
 
 
-def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Iterator[Edit]:
+def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term], whole: bool) -> Iterator[Edit]:
     match term:
         case Symbol(scalar=False):
             yield from _letter(term, letters)
@@ -135,25 +191,42 @@ def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term]) -> Ite
         case Number(value):
             yield Edit(Number(2 * value), ("twice the factor",), 2, "factor 2")
             yield Edit(Number(value / 2), ("half the factor",), 2, "factor 2")
-            yield Edit(Number(-value), ("the other sign of the factor",), 2, "sign")
+            yield Edit(Number(-value), ("the other sign of the factor",), 2, "plus")
         case Sum(parts):
             yield from _sum(parts, addends)
         case Product(factors):
-            yield from _product(factors)
+            yield from _product(factors, letters)
         case _:
             pass
     if isinstance(term, (Symbol, Transpose, Inverse)) and not getattr(term, "scalar", False):
         yield from _around(term, letters)
     found = shape_of(term)
-    if found and found[0] and not isinstance(term, Sum):
-        for addend in addends:
-            if shape_of(addend) == found:
-                yield Edit(Sum((term, addend)), ("with the addend ", addend), 4, "addend", addend)
-        if isinstance(term, (Product, Symbol)):
-            for number in (Fraction(2), Fraction(1, 2)):
-                twice = _times(number, term)
-                yield Edit(twice, (twice, " for ", term), 3, "factor 2")
-            yield Edit(Neg(term), ("the other sign of ", term), 2, "sign", term)
+    if found and found[0] and not isinstance(term, (Sum, Zero)):
+        yield from _alone(term, found, addends, whole)
+
+
+def _alone(term: Term, shape: Shape, addends: Sequence[Term], whole: bool) -> Iterator[Edit]:
+    """Add to what is no sum, double or halve it, turn its sign."""
+    for addend in addends:
+        if shape_of(addend) == shape and addend != term and (whole or _is_innovation(addend, term)):
+            yield Edit(Sum((term, addend)), ("with the addend ", addend), 4 if whole else 5, "addend", addend)
+    if isinstance(term, (Product, Symbol)):
+        for number in (Fraction(2), Fraction(1, 2)):
+            twice = _times(number, term)
+            yield Edit(twice, (twice, " for ", term), 3, "factor 2")
+        yield Edit(Neg(term), ("the other sign of ", term), 2, "minus", term)
+    if isinstance(term, Neg):
+        yield Edit(term.body, ("the other sign of ", term.body), 2, "plus", term.body)
+
+
+def _is_innovation(addend: Term, term: Term) -> bool:
+    """Tell whether C P C' is added to the covariance of a measurement."""
+    return (
+        isinstance(term, Symbol)
+        and isinstance(addend, Product)
+        and isinstance(addend.factors[0], Symbol)
+        and (addend.factors[0].glyph.letter == "C")
+    )
 
 
 def _times(number: Fraction, term: Term) -> Term:
@@ -204,7 +277,8 @@ def _sum(parts: tuple[Term, ...], addends: Sequence[Term]) -> Iterator[Edit]:
         rest = (*parts[:i], *parts[i + 1 :])
         body = part.body if isinstance(part, Neg) else part
         flipped = body if isinstance(part, Neg) else Neg(part)
-        yield Edit(Sum(_changed(parts, i, flipped)), ("the other sign of ", body), 2, "sign", body)
+        sign = "plus" if isinstance(part, Neg) else "minus"
+        yield Edit(Sum(_changed(parts, i, flipped)), ("the other sign of ", body), 2, sign, body)
         yield Edit(rest[0] if len(rest) == 1 else Sum(rest), ("without ", body), 4, "drop", body)
     for addend in addends:
         if shape_of(addend) == shape:
@@ -212,7 +286,7 @@ def _sum(parts: tuple[Term, ...], addends: Sequence[Term]) -> Iterator[Edit]:
             yield Edit(Sum((*parts, Neg(addend))), ("less ", addend), 4, "addend", addend)
 
 
-def _product(factors: tuple[Term, ...]) -> Iterator[Edit]:
+def _product(factors: tuple[Term, ...], letters: Sequence[Symbol]) -> Iterator[Edit]:
     for i, factor in enumerate(factors):
         rest = (*factors[:i], *factors[i + 1 :])
         if rest:
@@ -221,3 +295,12 @@ def _product(factors: tuple[Term, ...]) -> Iterator[Edit]:
         if i + 1 < len(factors):
             swapped = (*factors[:i], factors[i + 1], factor, *factors[i + 2 :])
             yield Edit(Product(swapped), (factor, " and ", factors[i + 1], " swapped"), 2, "swap")
+    term, ends = Product(factors), (factors[0], factors[-1])
+    if len(factors) > 1 and (ends[0] == Transpose(ends[1]) or Transpose(ends[0]) == ends[1]):
+        turned = (tidy(ends[0].T), *factors[1:-1], tidy(ends[1].T))
+        yield Edit(Product(turned), ("the two transposes of ", term, " exchanged"), 3, "transpose", Product(turned))
+    for letter in letters:
+        for x in (letter, letter.T):
+            yield Edit(
+                tidy(Product((x, term, tidy(x.T)))), ("with ", x, " and its transpose around ", term), 4, "around"
+            )

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from derive.decide.signals import expanded
+from derive.decide.workspace import Workspace
 from derive.kernel import Rejected
 from derive.matrix.instance import Instance, beside, one, stack
+from derive.rules import expect
 from derive.terms import (
     Block,
     Dot,
+    Equation,
     Expect,
     Identity,
     Inverse,
     Neg,
     Number,
     Product,
-    Reading,
     Sum,
     Symbol,
     Term,
@@ -38,8 +41,8 @@ class NoValue(Exception):  # noqa: N818 - what was found about a term
 class Point:
     """An instance with the reading by which operators are evaluated; values of subterms are kept."""
 
-    def __init__(self, instance: Instance, reading: Reading):
-        self.instance, self.reading = instance, reading
+    def __init__(self, instance: Instance, work: Workspace):
+        self.instance, self.work = instance, work
         self.known: dict[Term, fmpq_mat | fmpq] = {}
 
     def value(self, term: Term) -> fmpq_mat | fmpq:
@@ -52,7 +55,7 @@ class Point:
         if found is None:
             try:
                 found = self.known[term] = self._value(term)
-            except (KeyError, ValueError, ZeroDivisionError, TypeError, Rejected) as error:
+            except (LookupError, ValueError, ZeroDivisionError, TypeError, Rejected) as error:
                 raise NoValue(str(error)) from error
         return found
 
@@ -93,8 +96,11 @@ class Point:
                 return sum((matrix[i, i] for i in range(matrix.nrows())), fmpq(0))
             case Block(rows):
                 return stack([r for row in rows for r in beside([self.value(t) for t in row])])
-            case Dot() | Expect():
-                grid = lower(term, self.reading)
+            case Dot():
+                grid = lower(term, self.work.reading)
                 return stack([r for row in grid for r in beside([self.instance.evaluate(p) for p in row])])
+            case Expect():
+                image = expanded(Equation(term, "=", Zero("", "")), self.work)[0]
+                return self.instance.evaluate(expect(image, self.work.reading.context))
             case _:
                 raise ValueError(f"{type(term).__name__} is not evaluated")

@@ -17,12 +17,12 @@ from derive.decide.explain import sentence
 from derive.decide.matrix import prove_statement
 from derive.decide.workspace import Workspace
 from derive.interpret.statement import Statement
-from derive.kernel import Poly
+from derive.kernel import Poly, Rejected
 from derive.latex import latex
 from derive.matrix.instance import Instance
 from derive.matrix.refute import instances
 from derive.matrix.sample import sample
-from derive.terms import Dot, Equation, Expect, Symbol, Term, Trace, Transpose, walk
+from derive.terms import Dot, Equation, Expect, Symbol, Term, Trace, Transpose, lower, walk
 from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["Surroundings", "nearest", "with_equations"]
@@ -47,7 +47,8 @@ class Surroundings:
         letters = tuple(_letters(statement))
         everything = list(dict.fromkeys([*letters, *statement.symbols, *more]))
         order = any(e.relation not in ("=", ":=") for e in statement.equations)
-        return cls(statement, letters, tuple(_points(_theory(statement, everything), everything, order)))
+        theory = _theory(statement, everything)
+        return cls(statement, letters, tuple(_points(theory, everything, order, _operators(statement))))
 
     def holds(self, equations: Iterable[Equation]) -> bool:
         """Tell whether equations and inequalities hold at every instance."""
@@ -68,7 +69,7 @@ def nearest(around: Surroundings, seconds: float = SECONDS) -> tuple[Nearest, st
     for edit, changed in _ordered(equation, around.letters):
         if time.monotonic() > deadline or len(tried) >= TRIED:
             return None
-        if changed in tried or _trivial(changed, equation) or not around.holds((changed,)):
+        if changed in tried or _trivial(changed) or not around.holds((changed,)):
             continue
         tried.add(changed)
         if prove_statement(with_equations(statement, (changed,)), min(1.0, deadline - time.monotonic())):
@@ -80,20 +81,25 @@ def _ordered(equation: Equation, letters: Sequence[Symbol]) -> Iterator[tuple[Ed
     """Iterate over edited equations, the smallest edit first; the side that is not a letter alone comes first."""
     found: list[tuple[int, int, Edit, Equation]] = []
     sides = ("rhs", "lhs") if _is_plain(equation.lhs) else ("lhs", "rhs")
-    addends = _addends(equation, letters)
-    for order, side in enumerate(sides):
+    order, addends = equation.relation in ("⪰", "≻", "≥", ">"), _addends(letters)
+    for late, side in enumerate(sides):
         for edit in edits(getattr(equation, side), letters, addends):
-            if order and not _is_plain(edit.term) and _is_plain(getattr(equation, side)):
+            if late and not _is_plain(edit.term) and _is_plain(getattr(equation, side)):
                 continue  # a formula for 2 X is no formula for X
-            found.append((edit.cost + 2 * order, len(found), edit, replace(equation, **{side: edit.term})))
-    if equation.relation in ("⪰", "≻", "≥", ">"):
-        turned = Equation(equation.rhs, equation.relation, equation.lhs)
-        found.append((1, len(found), Edit(equation.lhs, ("the other way round",), 1, "order"), turned))
-        if equation.relation in ("≻", ">"):
-            weak = replace(equation, relation={"≻": "⪰", ">": "≥"}[equation.relation])
-            found.append((0, len(found), Edit(equation.lhs, ("not strict",), 0, "strict"), weak))
+            if not (order and edit.kind in ("plus", "minus", "factor 2")):
+                found.append((edit.cost + 2 * late, len(found), edit, replace(equation, **{side: edit.term})))
+    for edit, changed in _other_orders(equation) if order else ():
+        found.append((edit.cost, len(found), edit, changed))
     for _, _, edit, changed in sorted(found, key=lambda item: item[:2]):
         yield edit, changed
+
+
+def _other_orders(equation: Equation) -> Iterator[tuple[Edit, Equation]]:
+    turned = Equation(equation.rhs, equation.relation, equation.lhs)
+    yield Edit(equation.lhs, ("the other way round",), 1, "order"), turned
+    if equation.relation in ("≻", ">"):
+        weak = replace(equation, relation={"≻": "⪰", ">": "≥"}[equation.relation])
+        yield Edit(equation.lhs, ("not strict",), 0, "strict"), weak
 
 
 def _is_plain(term: Term) -> bool:
@@ -103,9 +109,9 @@ def _is_plain(term: Term) -> bool:
     return isinstance(term, (Symbol, Expect))
 
 
-def _trivial(changed: Equation, original: Equation) -> bool:
-    """Tell whether an edit says nothing: both sides alike."""
-    return changed.lhs == changed.rhs != original.rhs
+def _trivial(changed: Equation) -> bool:
+    """Tell whether an edit says nothing: both sides are alike."""
+    return changed.lhs == changed.rhs
 
 
 # ------------------------------------------------------------------------------------------------ what may be put in
@@ -137,11 +143,10 @@ def _siblings(symbol: Symbol, theory: ClaimTheory) -> list[Symbol]:
     ]
 
 
-def _addends(equation: Equation, letters: Sequence[Symbol]) -> list[Term]:
+def _addends(letters: Sequence[Symbol]) -> list[Term]:
     """Return what a sum may lack: a letter, or a letter between another and its transpose, such as L V L'."""
-    found: list[Term] = [s for s in letters if s.rows == s.cols]
-    found += [x * h * x.T for h in letters if h.symmetric for x in letters if x.cols == h.rows and x.letter != h.letter]
-    return found
+    around = [x * h * x.T for h in letters if h.symmetric for x in letters if x.cols == h.rows and x.letter != h.letter]
+    return [*letters, *around]
 
 
 # ------------------------------------------------------------------------------------------------ instances
@@ -159,7 +164,12 @@ def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Sta
     return replace(statement, equations=equations, symbols=symbols, theory=_theory(statement, symbols))
 
 
-def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool) -> list[Point]:
+def _operators(statement: Statement) -> list[Term]:
+    sides = [side for e in statement.equations for side in (e.lhs, e.rhs)]
+    return [n for side in sides for n in walk(side) if isinstance(n, (Dot, Expect))]
+
+
+def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool, operators: Sequence[Term]) -> list[Point]:
     """Return instances at which edits are tried: of the equations, or of everything for an inequality."""
     work = Workspace(theory, time.monotonic() + 1.0)
     problem = work.problem()
@@ -169,12 +179,14 @@ def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool) -> list
     polys = [Poly({((), (s.letter,)): 1}, s.rows, s.cols) for s in letters if s.name in known and not s.scalar]
     scalars = sorted({s.name for s in letters if s.scalar})
     polys += [Poly({((s,), ()): 1}, "", "") for s in scalars]
-    found: list[Instance] = []
-    if order:
-        found = instances(problem, polys, POINTS)
-    else:
-        found = sample(replace(problem, facts={}), polys, POINTS)
-    return [Point(i, work.reading) for i in found]
+    for node in operators:
+        try:
+            polys += [p for row in lower(node, work.reading) for p in row]
+        except Rejected:
+            continue
+    plain = replace(problem, facts={})
+    found: list[Instance] = instances(problem, polys, POINTS) if order else sample(plain, polys, POINTS)
+    return [Point(i, work) for i in found]
 
 
 def _holds(equation: Equation, points: Sequence[Point]) -> bool:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from derive.kernel import Poly, parts
 from derive.matrix.hypotheses import Hypotheses
-from derive.matrix.instance import Instance
+from derive.matrix.instance import Instance, one
 from derive.matrix.plan import Plan, make_plans
 
 __all__ = ["holds_at", "sample"]
@@ -66,7 +66,7 @@ def _draw(problem: Hypotheses, plan: Plan, sizes: dict[str, int], generator: ran
         rows, cols = instance.shape(name)
         value = fmpq_mat(rows, cols, [generator.randint(-LARGEST, LARGEST) for _ in range(rows * cols)])
         symmetric = problem.alphabet.letters[parts(name)[0]].symmetric
-        instance.values[name] = value * value.transpose() if symmetric else value
+        instance.values[name] = value * value.transpose() + one(rows) if symmetric else value
     return instance
 
 
