@@ -17,11 +17,23 @@ from derive.errors import InputError
 
 if TYPE_CHECKING:
     from derive import notes
+    from derive.check import check
     from derive.theory import covariance, duality, kalman_bucy, luenberger, observer
 
-__all__ = ["InputError", "__version__", "covariance", "duality", "kalman_bucy", "luenberger", "notes", "observer"]
+__all__ = [
+    "InputError",
+    "__version__",
+    "check",
+    "covariance",
+    "duality",
+    "kalman_bucy",
+    "luenberger",
+    "notes",
+    "observer",
+]
 
 _LATER = {
+    "check": "derive.check",
     "notes": "derive.notes",
     **{name: f"derive.theory.{name}" for name in ("observer", "covariance", "luenberger", "kalman_bucy", "duality")},
 }

@@ -1,4 +1,4 @@
-"""The command line: `derive tour`, `derive list`, `derive notes`, `derive verify`.
+"""The command line: `derive tour`, `derive list`, `derive notes`, `derive check`, `derive verify`.
 
 Each command imports what it needs when it runs. Exit codes: 0 everything as expected, 1 something refuted or rejected,
 2 bad input or usage, 3 nothing refuted, something undecided; where several apply, 2 before 1 before 3.
@@ -164,6 +164,62 @@ def verify(files: tuple[Path, ...]) -> int:
                 click.echo(f"  rejected {outcome.step}: {outcome.message}")
                 codes.add(REFUTED)
     return next(code for code in (BAD_INPUT, REFUTED, UNDECIDED, 0) if code in codes)
+
+
+@cli.command()
+@click.argument("claims", nargs=-1, required=True, metavar="CLAIM|FILE...")
+@click.option("--theory", default="", metavar="KEY", help="Theory in which claims are read that name none.")
+@click.option("--assume", multiple=True, metavar="FORMULA", help="Relation in LaTeX that is given; repeatable.")
+@click.option("--scalar", is_flag=True, help="Read every dimension as 1, where factors commute.")
+@click.option("--format", "form", type=click.Choice(["text", "json", "sarif"]), default="text", show_default=True)
+@click.option("--certificates", metavar="DIR", type=click.Path(path_type=Path), help="Write certificates there.")
+@click.option("--timeout", type=click.FloatRange(0.1, 86400), default=10.0, show_default=True, help="Seconds a claim.")
+@click.option("--jobs", type=click.IntRange(1, 256), help="Processes that decide; by default one a core.")
+def check(claims: tuple[str, ...], form: str, certificates: Path | None, jobs: int | None, **options: Any) -> int:
+    """Check formulas: each CLAIM in LaTeX, and the equations of each FILE.
+
+    What exists, or ends in .md, .tex, .ipynb or .jsonl, is a file; - reads standard input. Each claim is proved,
+    refuted, supported or undecided. Exit codes: 0 all proved, 2 something cannot be read, 1 something is refuted,
+    3 something is only supported or undecided; where several apply, 2 before 1 before 3.
+    """
+    from derive.check.certificates import write_certificates
+    from derive.check.run import check as run
+    from derive.check.run import usable_cores
+    from derive.check.text import complaints
+    from derive.files import make_folder
+
+    if certificates:
+        make_folder(certificates)
+    with counting("deciding") as show:
+        report = run(claims, jobs=jobs or usable_cores(), progress=show, **options)
+    if certificates:
+        write_certificates(report, certificates)
+    forms = {"text": lambda: str(report), "json": lambda: as_json(report.to_json()),
+             "sarif": lambda: as_json(report.to_sarif())}  # fmt: skip
+    click.echo(forms[form]())
+    for line in complaints(report):
+        complain(line)
+    return report.exit_code
+
+
+def as_json(data: object) -> str:
+    """Return data as JSON for people and programs; characters that no encoding has are escaped."""
+    text = json.dumps(data, indent=1, ensure_ascii=False)
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+@contextmanager
+def counting(label: str) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar on a terminal; yields a function that is told how much is done, and of how much."""
+    if not sys.stderr.isatty():
+        yield lambda done, of: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(label, total=None)
+        yield lambda done, of: bar.update(task, completed=done, total=of)
 
 
 def main() -> NoReturn:

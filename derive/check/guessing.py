@@ -1,0 +1,73 @@
+"""Theories that nobody named: guessed from the letters of a document, and never the ground of a refutation alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+
+from derive.check.item import Item
+from derive.check.judge import read_item
+from derive.check.result import Result
+from derive.claim import Answer, Verdict
+from derive.errors import InputError
+
+__all__ = ["guessed", "justified"]
+
+LETTERS = re.compile(r"\\[A-Za-z]+|[A-Za-z]")
+
+
+def guessed(items: Sequence[Item]) -> list[tuple[Item, str]]:
+    """Return claims with the theory that their document seems to be written in, and what speaks for it."""
+    files = dict.fromkeys(i.claim.file for i in items if not i.claim.theory and not i.message)
+    found = {file: _guess([i for i in items if i.claim.file == file and not i.claim.theory]) for file in files}
+    return [_with(item, *found.get(item.claim.file, ("", ""))) for item in items]
+
+
+def _with(item: Item, key: str, why: str) -> tuple[Item, str]:
+    if item.claim.theory or item.message:
+        return item, ""
+    return replace(item, claim=replace(item.claim, theory=key)), why
+
+
+def _guess(items: Sequence[Item]) -> tuple[str, str]:
+    """Return the key of a theory and what speaks for it; two empty texts if nothing does."""
+    from derive.interpret.guess import guess
+
+    displays = []
+    for item in items:
+        for latex in (item.claim.latex, *item.claim.assume):
+            try:
+                displays.append(read_item(item, latex))
+            except InputError:
+                continue
+    return guess(displays, items[0].setting.notation) or ("", "")
+
+
+def justified(results: Sequence[Result]) -> list[Result]:
+    """Return results in which no refutation rests on a guess that nothing confirms.
+
+    A guessed theory is confirmed for a claim when other claims of its document, proved from the theory's relations,
+    use all its letters, and when at least as many are proved that way as refuted.
+    """
+    return [_confirmed(r, results) if r.guessed and r.verdict == "refuted" else r for r in results]
+
+
+def _confirmed(result: Result, results: Sequence[Result]) -> Result:
+    mine = [r for r in results if r.guessed and r.claim.file == result.claim.file]
+    proved = [r for r in mine if r.verdict == "proved" and r.answer and r.answer.hypotheses_used]
+    known = {letter for r in proved for letter in _letters(r)}
+    if _letters(result) <= known and len(proved) >= sum(r.verdict == "refuted" for r in mine):
+        return result
+    key, answer = result.claim.theory, result.answer
+    ground = f": {answer.counterexample}" if answer and answer.counterexample else ""
+    notes = (
+        f"in {key}, which is a guess, it would be refuted{ground}",
+        f"name the theory to have it decided: theory={key} in a comment of the document, or --theory {key}",
+    )
+    return replace(result, verdict="undecided", answer=Answer(Verdict.undecided, notes=notes))
+
+
+def _letters(result: Result) -> set[str]:
+    """Return the letters of a claim without accents and indices."""
+    return {re.sub(r"[_^{].*", "", name) or name for name in result.shapes}

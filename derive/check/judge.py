@@ -1,0 +1,161 @@
+"""One claim from its LaTeX to its verdict: read, understand, decide."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from derive.check.item import Item
+from derive.check.result import ERROR, Result
+from derive.claim import Answer, Claim, Verdict
+from derive.errors import InputError
+
+if TYPE_CHECKING:
+    from derive.interpret import Statement
+    from derive.latex.syntax import Display
+
+__all__ = ["Decide", "judge", "read_item"]
+
+Decide = Callable[..., Answer]
+SHARE = 0.9  # of the time for a claim, for its decision
+
+
+def judge(item: Item, seconds: float = 10.0, decide: Decide | None = None) -> Result | None:
+    """Return what is said of a claim; None if it is none: a display that relates nothing.
+
+    Args:
+        item: the claim, its letters and macros.
+        seconds: bound on the time.
+        decide: how a statement is decided; by default ``derive.decide.decide``.
+    """
+    start = time.perf_counter()
+    result = _judge(item, seconds * SHARE, decide)
+    return replace(result, seconds=round(time.perf_counter() - start, 4)) if result else None
+
+
+def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
+    from derive.interpret import Misfit, echo, shapes
+
+    claim = item.claim
+    if item.message:
+        return Result(claim, ERROR, message=item.message)
+    try:
+        display = read_item(item, claim.latex)
+        if not (item.explicit or relates(display)):
+            return None
+        statement = _understood(item, display)
+        read_as, found_shapes = echo(statement), shapes(statement)
+        answer = _decided(statement, seconds, decide)
+    except Misfit as error:
+        return Result(claim, "refuted", Answer(Verdict.refuted, "types", notes=(str(error),)))
+    except InputError as error:
+        return _error(claim, error)
+    answer = replace(answer, certificate=_signed(answer, item, statement))
+    return Result(claim, str(answer.verdict), answer, read_as, found_shapes)
+
+
+def read_item(item: Item, latex: str) -> Display:
+    """Read a formula with the macros of its document.
+
+    Raises:
+        Unreadable: it is no formula.
+    """
+    from derive.latex.grammar import read
+
+    return read(latex, macros=item.setting.macros)
+
+
+def relates(display: Display) -> bool:
+    """Whether a display states a relation."""
+    from derive.latex.syntax import Related, walk
+
+    return any(isinstance(node, Related) for s in display.statements for node in walk(s))
+
+
+def _understood(item: Item, display: Display, *, theory: str = "") -> Statement:
+    from derive.interpret import understand
+    from derive.theory.claims import claim_theory
+
+    if not (theory or item.claim.theory):
+        raise InputError("theory: none was named and none could be guessed; name it with theory=KEY or --theory KEY")
+    return understand(
+        display,
+        claim_theory(theory or item.claim.theory),
+        assume=_assumed(item),
+        scalar=item.claim.scalar,
+        notation=item.setting.notation,
+    )
+
+
+def _assumed(item: Item) -> list[Display]:
+    """Read what is assumed."""
+    found: list[Display] = []
+    for i, latex in enumerate(item.claim.assume):
+        try:
+            found.append(read_item(item, latex))
+        except InputError as error:
+            origins = item.setting.origins
+            origin = f" (in {origins[i]})" if i < len(origins) and origins[i] else ""
+            raise InputError(f"assume {latex[:60]!r}{origin}: {error}") from None
+    return found
+
+
+def _decided(statement: Statement, seconds: float, decide: Decide | None) -> Answer:
+    """Decide a statement; what fails by itself leaves the claim undecided, and says so."""
+    if decide is None:
+        from derive.decide import decide
+    try:
+        return decide(statement, seconds=seconds)
+    except InputError:
+        raise
+    except MemoryError:
+        return Answer(Verdict.undecided, notes=("the decision needs more memory than there is",))
+    except Exception as error:
+        failed = f"the decision failed ({type(error).__name__}: {' '.join(str(error).split())[:200]}); please report it"
+        return Answer(Verdict.undecided, notes=(failed,))
+
+
+def _error(claim: Claim, error: InputError) -> Result:
+    """Return the result of a claim that cannot be read, with the place if there is one."""
+    from derive.latex.tokens import Unreadable, caret
+
+    if not isinstance(error, Unreadable):
+        return Result(claim, ERROR, message=_one_line(str(error)))
+    line = claim.line + claim.latex.count("\n", 0, error.column) if claim.line else 0
+    return Result(replace(claim, line=line), ERROR, message=_one_line(str(error)), excerpt=caret(claim.latex, error))
+
+
+def _one_line(message: str) -> str:
+    text = " ".join(message.split())
+    return text if len(text) <= 400 else f"{text[:400]}..."
+
+
+def _signed(answer: Answer, item: Item, statement: Statement) -> dict[str, Any] | None:
+    """Return the certificate with the text of the claim.
+
+    Certificates are replayed without macros and notation: where the claim uses them, its canonical LaTeX takes the
+    place of what was typed, if it reads the same; otherwise there is no certificate on file.
+    """
+    if answer.certificate is None:
+        return None
+    from derive.decide.certificate import signed
+
+    if not (item.setting.macros or item.setting.notation):
+        return signed(answer.certificate, item.claim)
+    plain = replace(item, setting=replace(item.setting, macros={}, notation={}))
+    for latex in dict.fromkeys((item.claim.latex, _echo(statement))):
+        try:
+            again = _understood(plain, read_item(plain, latex))
+        except InputError:
+            continue
+        if again.equations == statement.equations and again.assumed == statement.assumed:
+            return signed(answer.certificate, replace(item.claim, latex=latex))
+    return None
+
+
+def _echo(statement: Statement) -> str:
+    from derive.interpret import echo
+
+    return echo(statement)
