@@ -13,6 +13,7 @@ from derive.latex.tokens import Token, Unreadable
 from derive.latex.vocabulary import BOXES, COLUMNED, LAYOUTS, MATRICES, SIGNS_OF_MULTIPLICATION
 
 SIGNS = frozenset("+-*/") | SIGNS_OF_MULTIPLICATION | {"pm", "mp"}
+CLOSERS = frozenset((")", "]", "\\}", "}"))
 MAX_DEPTH = 20
 OPENING, SEPARATORS = frozenset(("(", "[", "\\{")), frozenset(("break", "column", "wide"))
 
@@ -56,6 +57,7 @@ def _unbroken(tokens: list[Token]) -> list[Token]:
             while j < len(tokens) and (tokens[j].kind == "break" or tokens[j].text == "&"):
                 j += 1
             if j < len(tokens) and j > i + 1 and (tokens[j].text, tokens[j].side) == ("null", "left"):
+                out.extend(tokens[i + 1 : i + 2])
                 i = j + 1
                 continue
         out.append(tokens[i])
@@ -70,7 +72,7 @@ def _paired_bars(tokens: list[Token]) -> list[Token]:
     for i, t in enumerate(tokens):
         if t.text in OPENING or t.text == "{" or (t.kind == "delimiter" and t.side == "left"):
             open_levels.append((t.text, []))
-        elif open_levels and (t.text in (")", "]", "\\}", "}") or (t.kind == "delimiter" and t.side == "right")):
+        elif open_levels and (t.text in CLOSERS or (t.kind == "delimiter" and t.side == "right")):
             opened, bars = open_levels.pop()
             if len(bars) == 1 and opened in OPENING:
                 out[bars[0]] = replace(tokens[bars[0]], side="middle")
@@ -104,44 +106,81 @@ class _Frame:
     columns: int = 0
 
 
-def _flattened(tokens: list[Token]) -> list[Token]:
-    """Take off the environments that only lay out, and turn their rows and columns into separators."""
-    frames, out, depth = [_Frame(Token("begin", "equation", 0, 0), True)], list[Token](), 0
-    for i, t in enumerate(tokens):
-        top = frames[-1]
-        if t.kind == "begin":
-            if len(frames) > MAX_DEPTH:
-                raise Unreadable(t.start, f"at most {MAX_DEPTH} environments inside each other", "one more")
-            frames.append(_Frame(t, _is_layout(tokens, i, out)))
-            if not frames[-1].layout:
-                out.append(t)
-                depth += 1
-        elif t.kind == "finish":
-            if t.text != top.begin.text or len(frames) == 1:
-                expected = f"\\end{{{top.begin.text}}}" if len(frames) > 1 else "a formula"
-                raise Unreadable(t.start, expected, t.shown())
-            frames.pop()
-            if not top.layout:
-                out.append(t)
-                depth -= 1
-        elif top.layout and t.kind == "break":
-            top.columns = 0
-            out.extend([replace(t, kind="break")] if not depth else [])
-        elif top.layout and t.text == "&" and t.kind == "sign":
+class _Flattener:
+    """Takes off the environments that only lay out, and turns their rows and columns into separators."""
+
+    def __init__(self) -> None:
+        self.frames = [_Frame(Token("begin", "equation", 0, 0), True)]
+        self.out: list[Token] = []
+        self.depth = 0
+        self.broken: Token | None = None  # a line break inside brackets
+
+    def put(self, t: Token) -> None:
+        """Append a token; at a break inside brackets a sign must stand, and one that is repeated is read once."""
+        last = self.out[-1] if self.out else t
+        if self.broken is not None and not (_sign(t) and _same(t, last)):
+            closes = t.text in CLOSERS or (t.kind == "delimiter" and t.side == "right")
+            opened = last.text in OPENING or last.text == "," or (last.kind == "delimiter" and last.side == "left")
+            if not (_dangling(last) or _dangling(t) or closes or opened):
+                raise Unreadable(t.start, "a sign at a line break inside brackets", t.shown())
+            self.out.append(t)
+        elif self.broken is None:
+            self.out.append(t)
+        self.broken = None
+
+    def begin(self, t: Token, tokens: list[Token], i: int) -> None:
+        """Open an environment."""
+        if len(self.frames) > MAX_DEPTH:
+            raise Unreadable(t.start, f"at most {MAX_DEPTH} environments inside each other", "one more")
+        layout = _is_layout(tokens, i, self.out)
+        self.frames.append(_Frame(t, layout))
+        if not layout:
+            self.put(t)
+            self.depth += 1
+
+    def finish(self, t: Token) -> None:
+        """Close an environment."""
+        top = self.frames[-1]
+        if t.text != top.begin.text or len(self.frames) == 1:
+            raise Unreadable(t.start, f"\\end{{{top.begin.text}}}" if len(self.frames) > 1 else "a formula", t.shown())
+        self.frames.pop()
+        if not top.layout:
+            self.broken = None
+            self.out.append(t)
+            self.depth -= 1
+
+    def mark(self, t: Token) -> None:
+        """Read a line break or an alignment."""
+        top, ampersand = self.frames[-1], t.kind != "break"
+        if not top.layout:
+            self.out.append(replace(t, kind="cell" if ampersand else "row"))
+        elif ampersand:
             top.columns += 1
             even = top.columns % 2 == 0 and top.begin.text in COLUMNED
-            out.extend([replace(t, kind="column" if even else "align")] if not depth else [])
-        elif t.kind == "wide" and depth:
-            continue
-        elif t.kind == "break" or (t.text == "&" and t.kind == "sign"):
-            out.append(replace(t, kind="row" if t.kind == "break" else "cell"))
+            self.out.extend([replace(t, kind="column" if even else "align")] if not self.depth else [])
         else:
-            depth += _opens(t)
-            out.append(t)
-    if len(frames) > 1:
-        begin = frames[-1].begin
+            top.columns = 0
+            self.out.extend([t] if not self.depth else [])
+            self.broken = t if self.depth else None
+
+
+def _flattened(tokens: list[Token]) -> list[Token]:
+    """Return the tokens without environments that only lay out."""
+    flat = _Flattener()
+    for i, t in enumerate(tokens):
+        if t.kind == "begin":
+            flat.begin(t, tokens, i)
+        elif t.kind == "finish":
+            flat.finish(t)
+        elif t.kind == "break" or (t.text == "&" and t.kind == "sign"):
+            flat.mark(t)
+        elif t.kind != "wide" or not flat.depth:
+            flat.put(t)
+            flat.depth += _opens(t)
+    if len(flat.frames) > 1:
+        begin = flat.frames[-1].begin
         raise Unreadable(begin.start, f"\\end{{{begin.text}}} to {begin.shown()}", "the end of the formula")
-    return out
+    return flat.out
 
 
 def _opens(token: Token) -> int:
@@ -150,7 +189,7 @@ def _opens(token: Token) -> int:
         return 1 if token.side == "left" else -1
     if token.kind == "delimiter" and token.side == "middle":
         return 0
-    return 1 if token.text in OPENING or token.text == "{" else -1 if token.text in (")", "]", "\\}", "}") else 0
+    return 1 if token.text in OPENING or token.text == "{" else -1 if token.text in CLOSERS else 0
 
 
 def _is_layout(tokens: list[Token], i: int, before: list[Token]) -> bool:
