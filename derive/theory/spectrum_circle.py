@@ -226,7 +226,7 @@ def derive(b: ScalarBuilder) -> None:
         ["Poisson lemma", "centre: integral"],
     )
     known = [f"k{sign} = 1+ω^2, logarithm" for sign in "-+"]
-    _as(b, "a root of the half plane", from_plane(t, a, c), root - centre(t), [*known, "Π", *UNIT])
+    same_integrand(b, "a root of the half plane", from_plane(t, a, c), root - centre(t), [*known, "Π", *UNIT])
     known = ["a root of the half plane, integral", "difference: integral"]
     known += [f"far centre{sign}, logarithm" for sign in "-+"]
     b.state("half-plane lemma", Equation(half(t, from_plane(t, a, c)), "=", in_plane(t, Abs(a), c)), "s0 = 1", known)
@@ -239,7 +239,7 @@ def _same(b: ScalarBuilder, name: str, one: Term, other: Term, using: Sequence[s
     b.linked(f"{name}, logarithm", logs, "same argument", "the same number", [name])
 
 
-def _as(b: ScalarBuilder, name: str, one: Term, other: Term, using: Sequence[str]) -> None:
+def same_integrand(b: ScalarBuilder, name: str, one: Term, other: Term, using: Sequence[str]) -> None:
     """Derive that two integrands are equal, and so are their integrals over half of the axis."""
     b.state(name, Equation(one, "=", other), "by their parts", using)
     halves = Equation(half(b.theory, one), "=", half(b.theory, other))
@@ -252,7 +252,7 @@ def _derive_constant(b: ScalarBuilder) -> None:
     number = t.symbols["γ"]
     G = Quotient(ONE, t.symbols["σ0"]) * number * turns(t)
     by_antiderivative(b, "number", G, kernels(t) * number, PI * number, ["|σ0| = σ0", "Π"])
-    _as(b, "a number", constant(t, number), kernels(t) * number, ["Π", *UNIT])
+    same_integrand(b, "a number", constant(t, number), kernels(t) * number, ["Π", *UNIT])
     known = ["a number, integral", "number: integral"]
     b.state("number lemma", Equation(half(t, constant(t, number)), "=", PI * number), "half of the circle", known)
 
@@ -284,7 +284,7 @@ def derive_root(b: ScalarBuilder, root: Symbol) -> None:
         [f"half-plane lemma of {name}", f"number lemma: {name}"],
     )
     known = [f"log of chord{sign} {name}" for sign in "-+"]
-    _as(b, f"{name} on the circle", circle(t, root), scaled_image(t, root), known)
+    same_integrand(b, f"{name} on the circle", circle(t, root), scaled_image(t, root), known)
     known = [f"{name} on the circle, integral", f"scaled image of {name}"]
     known += [f"log of far image{sign} {name}" for sign in "-+"]
     derive_jensen(b, root, known)
@@ -351,7 +351,7 @@ def derive_at_minus_one(b: ScalarBuilder, root: Symbol, body: Term) -> None:
         logs = Equation(Log(chord(t, root, k)), "=", Log(FOUR))
         b.linked(f"log of chord{sign} {name}", logs, "same argument", "the same number", [f"chord{sign} {name}"])
     known = [f"log of chord{sign} {name}" for sign in "-+"] + [f"k{sign} = 1+ω^2, logarithm" for sign in "-+"]
-    _as(b, f"{name} on the circle", circle(t, root), body, [*known, "Π", *UNIT])
+    same_integrand(b, f"{name} on the circle", circle(t, root), body, [*known, "Π", *UNIT])
 
 
 def derive_jensen(b: ScalarBuilder, root: Symbol, using: Sequence[str]) -> None:

@@ -11,12 +11,19 @@ from functools import cache
 
 from derive.context import Theory
 from derive.derivation import Lecture
-from derive.theory import spectrum_circle, spectrum_discrete, spectrum_dt_theorem, spectrum_poisson, spectrum_roots
+from derive.theory import (
+    spectrum_circle,
+    spectrum_discrete,
+    spectrum_dt_matrix,
+    spectrum_dt_theorem,
+    spectrum_poisson,
+    spectrum_roots,
+)
 from derive.theory.scalar_theory import ScalarTheory
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum-dt", "spectrum-dt"
-PARTS = (spectrum_roots, spectrum_poisson, spectrum_circle, spectrum_discrete, spectrum_dt_theorem)
+PARTS = (spectrum_roots, spectrum_poisson, spectrum_circle, spectrum_discrete, spectrum_dt_matrix, spectrum_dt_theorem)
 
 
 @cache

@@ -35,7 +35,7 @@ from derive.terms import Equation, Identity, Inverse, Neg, Number, Product, Sum,
 
 Values = Any  # a number or an array: one number, or matrix, for each point of a grid
 TOLERANCE = 1e-6
-NOT_REAL = 1e-9
+NOT_REAL = 1e-7  # relative; the spectrum near a pole on the circle has rounding errors of this size
 POINTS = ("α", "β"), ("σ0", "ω0")  # one root, and a point in the right half plane
 
 

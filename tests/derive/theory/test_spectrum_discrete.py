@@ -21,7 +21,7 @@ from derive.spectral import Det, Growth, ImaginaryPart, RealPart
 from derive.terms import Equation, Neg, Number, Product, Sum, Term, Trace, Zero
 from derive.theory import spectrum_dt
 from derive.theory.spectrum_circle import angle, point
-from derive.theory.spectrum_dt_theorem import outside
+from derive.theory.spectrum_dt_matrix import outside
 from derive.theory.spectrum_roots import HALF, axis
 from tests.derive.theory.mutants import judged, mutants, swapped_in, walk
 from tests.reference.spectrum_dt_plants import plants, world
@@ -115,8 +115,9 @@ def test_one_eigenvalue_by_quadrature(name, root):
 
 # ------------------------------------------------------------------------------------------------ false
 KEY_STEPS = (
-    "factorisation", "spectrum and loops", "ln det Phi on the circle", "modulus of the open loop", "circle lemma of ζ",
-    "Jensen's formula for ζ", "no growth of ξ", "all eigenvalues", "half of the circle", THEOREM,
+    "factorisation", "spectrum and loops", "ln det Phi on the circle", "modulus for A", "circle lemma of ζ",
+    "Jensen's formula for ζ", "no growth of ξ", "all eigenvalues", "Jensen's formula for A", "half of the circle",
+    THEOREM,
 )  # fmt: skip
 SAME = ("C P' C'", "(C')'", "C' + R'", "Φ_y(e^jω)'", "(∫_{-π}^π ln(det Φ_y(e^jω)) dω) 1/(2 π)")  # the theorem, as well
 
