@@ -17,7 +17,7 @@ from derive.kernel import Rejected
 from derive.terms import Equation, Glyph, Reading, Symbol, Term
 
 Proved = tuple[str, str]  # lecture and step
-INDEX = re.compile(r"^(?:([A-Za-z])([+-]\d+)?|(\d+))$")
+INDEX = re.compile(r"^(?:([ijknNt])([+-]\d+)?|(\d+))$")
 
 
 @dataclass(frozen=True)
@@ -115,6 +115,16 @@ class Draft:
         if symbol is None:
             raise Rejected(f"{name} is no letter of {self.outline.key}")
         return symbol
+
+    def indices(self) -> dict[str, dict[int, set[str]]]:
+        """Return which families are used at which index: for each index letter, by its number."""
+        letters, found = self.outline.letters.symbols, dict[str, dict[int, set[str]]]()
+        for name in self.used:
+            stem, index = split_index(name)
+            if index and name not in letters and stem + "_#" in letters:
+                letter, number = count(index)
+                found.setdefault(letter, {}).setdefault(number, set()).add(stem)
+        return found
 
     def note(self, name: str, by: Proved | None, optimal: bool) -> None:
         """Note what proves a declaration, and whether it needs the optimal gain."""

@@ -92,7 +92,7 @@ def _filter(d: Draft) -> None:
     for time in ("t", "t0"):
         joint = block([[ss.at(time), sv.at(time)], [sv.at(time).T, vv.at(time)]])
         d.assume(f"joint covariance at {time}", joint, "⪰", text="a covariance")
-        d.assume(f"stays stationary at {time}", vv.at(time), "=", stationary, by=(LECTURE, "stays stationary"))
+    d.assume("stays stationary", vv, "=", stationary, by=(LECTURE, "stays stationary"))
     d.assume("X_ss(t0)", ss.at("t0"), "=", Zero("s", "s"), by=(LECTURE, "start"))
     d.assume("X_sv(t0)", sv.at("t0"), "=", Zero("s", "v"), by=(LECTURE, "start"))
     if d.has("x_s", "v", "n_v"):

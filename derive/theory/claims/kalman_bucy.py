@@ -180,7 +180,7 @@ def _dynamics(d: Draft) -> None:
         d.define(_at("innovation", time), e.at(time), y.at(time) - y_hat.at(time))
         d.define(_at("error", time), error.at(time), x.at(time) - x_hat.at(time))
         d.define(_at("output error", time), gap.at(time), z.at(time) - y_hat.at(time))
-    d.define("correction", u, K * e)
+    d.define("correction", u, K * e, by=(LECTURE, "correction"))
     d.assume("error dynamics", Dot(error), "=", (A - K * C) * error + w - K * v, by=(LECTURE, "error dynamics"))
 
 
@@ -202,7 +202,7 @@ def _moments(d: Draft, cross: bool) -> None:
             d.define(f"w and v {name}", Expect(w.at(one) * v.at(two).T), N * delta)
         elif not cross:
             d.assume(f"w and v {name}", Expect(w.at(one) * v.at(two).T), "=", Zero("m", "l"))
-    d.define("P(t) definition", Expect(error * error.T), P)
+    d.define("P(t) definition", Expect(error * error.T), P, by=(LECTURE, "attained"))
 
 
 def _spectrum(d: Draft, cross: bool) -> None:

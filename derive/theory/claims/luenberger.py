@@ -13,7 +13,7 @@ from itertools import pairwise
 
 from derive.context import Theory
 from derive.terms import Expect, Glyph, Symbol, Term, Zero, block
-from derive.theory.claims.base import Draft, Outline, count, index_at, split_index
+from derive.theory.claims.base import Draft, Outline, index_at
 from derive.theory.luenberger_formulas import (
     any_gain,
     covariance,
@@ -89,12 +89,7 @@ def _names(t: Theory) -> dict[str, Term]:
 # ------------------------------------------------------------------------------------------------ declarations
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
-    used: dict[str, dict[int, set[str]]] = {}
-    for name in d.used:
-        stem, index = split_index(name)
-        if index and stem + "_#" in d.outline.letters.symbols:
-            letter, number = count(index)
-            used.setdefault(letter, {}).setdefault(number, set()).add(stem)
+    used = d.indices()
     noise = Noise(d, used)
     noise.declare()
     if d.has(*STEADY):
@@ -233,18 +228,17 @@ def _moments(d: Draft, indices: list[str], noise: Noise) -> None:
                 if later != index:
                     d.assume(f"{w.name} and {one.name}", Expect(w * one.T), "=", Zero("n", one.rows))
                     d.assume(f"{v.name} and {one.name}", Expect(v * one.T), "=", Zero("l", one.rows))
-        _instant(d, index, R)
+        _instant(d, index)
 
 
-def _instant(d: Draft, index: str, R: Symbol) -> None:
+def _instant(d: Draft, index: str) -> None:
     """Declare output and error, and the filtered estimate, at an index."""
     (C,) = d.of("C")
-    x, xhat, y, e, v, P = (d.at(k, index) for k in ("x", "xhat", "y", "e", "v", "P"))
+    x, xhat, y, e, v = (d.at(k, index) for k in ("x", "xhat", "y", "e", "v"))
     d.define(f"output at {index}", y, C * x + v)
     d.define(f"error at {index}", e, xhat - x)
     if d.has(d.at("xhat+", index).name, d.at("e+", index).name):
-        filtered, error = d.at("xhat+", index), d.at("e+", index)
-        L_f = P * C.T * innovation(C, P, R).inv
+        filtered, error, L_f = d.at("xhat+", index), d.at("e+", index), d.at("L^f", index)
         d.define(f"filtered estimate at {index}", filtered, xhat - L_f * (C * xhat - y))
         d.define(f"filtered error at {index}", error, filtered - x)
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 from derive.context import Theory
 from derive.terms import Glyph, Term
-from derive.theory.claims.base import Draft, Outline, count, index_at, split_index
+from derive.theory.claims.base import Draft, Outline, index_at
 from derive.theory.regulator import cost_to_go, regulator_gain, weight
 
 KEY, LECTURE = "lqr-dt", "duality"
@@ -56,13 +56,7 @@ def declare(d: Draft) -> None:
     costs(d)
     if d.has("S", "K"):
         _steady(d)
-    used: dict[str, dict[int, set[str]]] = {}
-    for name in d.used:
-        stem, index = split_index(name)
-        if index and stem + "_#" in d.outline.letters.symbols:
-            letter, number = count(index)
-            used.setdefault(letter, {}).setdefault(number, set()).add(stem)
-    for letter, numbers in used.items():
+    for letter, numbers in d.indices().items():
         _horizon(d, letter, numbers)
 
 
