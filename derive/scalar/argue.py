@@ -6,10 +6,10 @@ the tree says so.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations_with_replacement
+from itertools import combinations, combinations_with_replacement
 from math import comb, isqrt
 from time import monotonic
 from typing import Any
@@ -252,7 +252,7 @@ class _Search:
             return Reason("z3", used=used)
         if relation == ">" and known_fact(self.known, poly, "≥"):
             return Reason("apart", factors=(Factor(plain, 1, 1, self._by_z3("≠", poly)),))
-        wider = tuple(n for n, (kind, _) in facts.items() if n in used or kind == "positive")
+        wider = tuple(n for n, (kind, _) in facts.items() if n in used or kind in ("positive", "nonzero"))
         for names in (used, wider) if len(wider) > len(used) else (used,):
             sign = self._certificate(relation, plain, {n: facts[n] for n in names})
             if sign is not None:
@@ -276,9 +276,7 @@ class _Search:
         while len(ideal.rules) < 12 and ideal.grow():
             pass
         remainders = Remainders(ideal, facts)
-        squares = [self.ring.poly(self.ring.letter(n)) for n in order if not n.startswith("√")]
-        pairs = [*squares, *(a * b for a, b in combinations_with_replacement(squares, 2))]
-        for degree, used in ((1, squares), (2, squares), (3, []), (3, squares), (4, []), (3, pairs)):
+        for degree, used in _multipliers([(n, self.ring.poly(self.ring.letter(n))) for n in order]):
             if comb(len(facts) + degree, degree) * (1 + len(used)) > PRODUCTS:
                 continue
             found = contradiction(list(products(facts, used, degree)), remainders)
@@ -315,6 +313,16 @@ def _sign(
         total = total + sign_product(product, facts)[0]
     terms = ideal.member(total)
     return None if terms is None else Sign(claim, relation, tuple(found), terms)
+
+
+def _multipliers(letters: Sequence[tuple[str, Poly]]) -> Iterator[tuple[int, list[Poly]]]:
+    """Iterate over degrees of products of facts, and polynomials whose squares multiply them; the cheap ones first."""
+    squares = [p for n, p in letters if not n.startswith("√")]
+    pairs = [*squares, *(a * b for a, b in combinations_with_replacement(squares, 2))]
+    every = [p for _, p in letters]
+    sums = [a + b.scale(c) for a, b in combinations(every, 2) for c in (-1, 1)]
+    sums += [a * a - b * b for a, b in combinations(squares, 2)]
+    yield from ((1, squares), (2, squares), (3, []), (3, squares), (4, []), (3, pairs), (1, [*sums, *pairs]), (2, sums))
 
 
 def _named(sign: Sign) -> set[str]:

@@ -20,6 +20,7 @@ from derive.claim import Answer, Counterexample, Verdict
 from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.errors import InputError
 from derive.interpret.statement import Statement
+from derive.latex import plain
 from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
 from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.example import NumberExample
@@ -31,7 +32,7 @@ from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.reasons import bearing_names, letters_of, used_names
 from derive.scalar.system import ROOTS, Split, System, names_in, system
-from derive.terms import Equation, Symbol, walk
+from derive.terms import Equation, Symbol, Zero, walk
 from derive.theory.claims.base import split_index
 
 __all__ = ["decide_scalar"]
@@ -77,7 +78,16 @@ class Work:
         names = names_in(statement)
         ring = FlintRing([*names, *ROOTS])
         known = system(statement, ring, (), without)
-        return cls(statement, ring, names, known, Instances(known, ring, names), deadline, _shown(statement, known), moving(statement))
+        return cls(
+            statement,
+            ring,
+            names,
+            known,
+            Instances(known, ring, names),
+            deadline,
+            _shown(statement, known),
+            moving(statement),
+        )
 
     def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
         """Iterate over the instances that contradict the statement."""
@@ -117,13 +127,14 @@ class Work:
         return bool(failure.undefined), not failure.exact, failure.instance.size(self.shown)
 
 
-def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool = False) -> Answer:
+def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool = False, near: bool = True) -> Answer:
     """Decide a statement about real numbers.
 
     Args:
         statement: equations and inequalities between numbers, or matrices with every dimension 1.
         seconds: bound on the time; z3 is bounded by its own count, so that the answer does not depend on the machine.
         explain: look for a counterexample without each hypothesis that a proof uses.
+        near: look for the nearest true formula to one that is refuted, or where one that is undefined holds.
 
     Raises:
         InputError: the assumptions contradict each other or the theory.
@@ -135,9 +146,37 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
         return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
     _satisfiable(work)
     found = work.simplest(work.failures(work.instances.first(FIRST, POINTS)))
-    if found is not None:
-        return _refuted(work, found)
-    return _proved_or_not(work, explain)
+    answer = _proved_or_not(work, explain) if found is None else _refuted(work, found)
+    return _with_neighbours(answer, work) if near and answer.verdict is Verdict.refuted else answer
+
+
+def _with_neighbours(answer: Answer, work: Work) -> Answer:
+    """Add what is true instead: of a formula that is undefined, where it holds; else the nearest true one."""
+    from derive.scalar.near import nearest_scalar
+
+    left = min(2.0, work.deadline - monotonic())
+    if answer.method == "undefined":
+        where = _where(work, answer.counterexample)
+        return replace(answer, notes=(*answer.notes, f"proved where {where}")) if where else answer
+    return replace(answer, nearest=nearest_scalar(work.statement, seconds=left))
+
+
+def _where(work: Work, example: Counterexample | None) -> str:
+    """Return a condition on a letter that is zero or negative in a counterexample, with which the claim is true."""
+    statement = work.statement
+    values = {n: v[0][0] for n, v in example.values.items()} if example else {}
+    letters = [s for s in statement.symbols if values.get(s.name, 1) <= 0 and s.name in letters_of(statement)]
+    zero = [s for s in letters if values[s.name] == 0]
+    for symbol, relation in (*((s, "≠") for s in zero), *((s, ">") for s in letters), *((s, "≥") for s in letters)):
+        condition = Equation(symbol, relation, Zero("", ""))
+        theory = replace(statement.theory, conditions=(*statement.theory.conditions, condition))
+        other = replace(statement, theory=theory, assumed=(*statement.assumed, plain(condition)))
+        try:
+            if decide_scalar(other, seconds=work.deadline - monotonic(), near=False).verdict is Verdict.proved:
+                return plain(condition)
+        except InputError:
+            continue
+    return ""
 
 
 def moving(statement: Statement) -> str:
