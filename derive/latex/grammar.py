@@ -34,11 +34,8 @@ from derive.latex.syntax import (
     walk,
 )
 from derive.latex.tokens import Token, Unreadable, sized, tokenise
-from derive.latex.vocabulary import SIGNS_OF_MULTIPLICATION
+from derive.latex.vocabulary import NO_OPERANDS, SIGNS_OF_MULTIPLICATION
 
-NO_OPERANDS = frozenset(
-    ("forall", "pm", "mp", "cdot", "times", "ast", "hline", "star", "top", "overset", "stackrel", "not")
-)
 QUANTIFIERS = frozenset(("all", "any", "each", "every", "for", "as", "when", "if", "with"))
 SIGNS = {"+": "+", "-": "-", "pm": "±", "mp": "∓"}
 
@@ -278,8 +275,7 @@ class Reader(Operators):
         if isinstance(group.body, Name) and group.body.sup and self.look().text in ("^", "'"):
             return False  # brackets that make room for an exponent: F (P^-)^{-1}
         if found is Reading.BOTH:
-            shown = head.letter if len(head.letter) == 1 else "\\" + head.letter
-            self.ambiguous(head, f"a product, {shown} \\cdot (...)", f"{shown} as a function")
+            self.ambiguous(head, f"a product, {head.letter} \\cdot (...)", f"{head.letter} as a function")
         return found is Reading.APPLIED
 
     def scripted(self, node: Node, start: Token) -> Node:

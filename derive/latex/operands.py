@@ -38,7 +38,9 @@ from derive.latex.vocabulary import (
     FUNCTION_COMMANDS,
     FUNCTIONS,
     MATRICES,
+    NO_OPERANDS,
     ROMAN,
+    SIZES,
     STYLES,
     UNMARKED,
 )
@@ -77,14 +79,14 @@ class Operands(Names):
     def _closed(self, start: Token, close: Token, body: Node) -> str:
         """Return the fence if a token closes the group, else raise what was expected."""
         wanted = CLOSING[start.text]
-        right = "\\right" if start.side == "left" and start.end - start.start > 5 else ""
-        sides = {"left": ("right",), "right": (), "middle": ()}.get(start.side, ("", "right"))
-        if close.kind == "delimiter" and close.text == wanted and (close.side in sides or start.text not in "|‖"):
+        sized = {"left": "right"}.get(start.side, "")
+        if close.kind == "delimiter" and close.side == sized and close.text == wanted:
             return FENCES[start.text]
-        halves = start.text in "([" and close.text in (")", "]") and close.kind == "delimiter"
+        halves = start.text in ("(", "[") and close.text in (")", "]") and close.kind == "delimiter"
         if halves and isinstance(body, Listed) and len(body.items) == 2:
             return start.text + close.text
-        self.fail(f"an operator or the {right}{wanted} of this {start.shown()}")
+        right = " with its size" * bool(sized)
+        self.fail(f"an operator or the {wanted}{right} to the {start.text} in column {start.start + 1}")
 
     def content(self, start: Token) -> Node:
         """Read what stands between brackets: one thing, several with commas, or one under a condition."""
@@ -122,7 +124,7 @@ class Operands(Names):
         with self.inside(token):
             node = self.expression()
             if not self.took("}"):
-                self.fail("an operator or the } of this {")
+                self.fail(f"an operator or the }} to the {{ in column {token.start + 1}")
         return node
 
     def group(self, styled: bool = False) -> Node:
@@ -151,8 +153,7 @@ class Operands(Names):
         if token.kind == "letter":
             return self.letter()
         if token.kind == "number":
-            self.at += 1
-            return Digits(Fraction(token.text), span=(token.start, token.end))
+            return self.number()
         if token.kind == "delimiter" and self.starts_operand(token):
             return self.fenced()
         if token.kind == "begin":
@@ -162,6 +163,16 @@ class Operands(Names):
         if token.kind == "command":
             return self.command()
         self.fail("a formula")
+
+    def number(self) -> Digits:
+        """Read a number; 1e-3 would be a product on the page."""
+        token, letter, sign = self.take(), self.look(), self.look(1)
+        if token.text.count(".") > 1:
+            self.fail("a number with one point", token)
+        beside = letter.text in ("e", "E") and letter.start == token.end and sign.start == letter.end
+        if beside and (sign.kind == "number" or (sign.text in "+-" and self.look(2).start == sign.end)):
+            self.ambiguous(token, f"{token.text} \\cdot 10^n", f"{token.text} e + n")
+        return Digits(Fraction(token.text), span=(token.start, token.end))
 
     def letter(self) -> Node:
         """Read a letter; a run of letters that spells a function is refused."""
@@ -232,7 +243,8 @@ class Operands(Names):
             return Name({"jmath": "j", "imath": "i"}.get(name, name), span=(token.start, token.end))
         operator = self.operator(token)
         if operator is None:
-            self.fail("a formula")
+            known = name in NO_OPERANDS or name in SIZES
+            self.fail("a formula" if known else "a command that is known here, or a macro that the document defines")
         return operator
 
     def _styled(self) -> Node:

@@ -70,7 +70,7 @@ class Operators(Operands):
         with self.inside(start):
             items = self.separated(self.relation)
             if not self.took("}"):
-                self.fail("an operator or the } of this {")
+                self.fail(f"an operator or the }} to the {{ in column {start.start + 1}")
         return items[0] if len(items) == 1 else Listed(tuple(items))
 
     def _power(self, function: str, start: Token) -> Node:
@@ -262,7 +262,7 @@ class Operators(Operands):
             self.integral, self.numerator = integral, True
             top = self.expression()
             if not self.took("}"):
-                self.fail("an operator or the } of this {")
+                self.fail(f"an operator or the }} to the {{ in column {start.start + 1}")
         return top
 
     def _over_differential(self) -> bool:

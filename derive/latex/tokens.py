@@ -84,7 +84,7 @@ class Token:
 
 
 PATTERN = re.compile(
-    r"(?P<space>\s+|~|%[^\n]*)|(?P<command>\\[A-Za-z]+)|(?P<escape>\\[^A-Za-z])|(?P<number>[0-9]+(?:\.[0-9]+)?)"
+    r"(?P<space>\s+|~|%[^\n]*)|(?P<command>\\[A-Za-z]+)|(?P<escape>\\[^A-Za-z])|(?P<number>[0-9]+(?:\.[0-9]+)*)"
     r"|(?P<parameter>\#[1-9])|(?P<letter>[A-Za-z])|(?P<relation>:=|=|<|>)|(?P<dots>\.\.\.)"
     r"|(?P<delimiter>[()\[\]|])|(?P<sign>[-+*/^_{}&.,;:!'$])|(?P<other>.)",
     re.DOTALL,
@@ -227,7 +227,10 @@ def _unicode(source: str, start: int) -> tuple[list[Token], int]:
 
 
 def _meaningless(char: str, start: int) -> Unreadable:
-    return Unreadable(start, "a formula", f"the character U+{ord(char):04X}, which has no meaning in one")
+    shown = (
+        f"{char} (U+{ord(char):04X})" if char.isprintable() and char.isascii() else f"the character U+{ord(char):04X}"
+    )
+    return Unreadable(start, "a formula", f"{shown}, which has no meaning in one")
 
 
 def _plain(text: str, start: int) -> str:

@@ -89,6 +89,7 @@ TRANSPOSES = {"top": "top", "intercal": "top", "T": "T", "*": "star", "ast": "st
               "dagger": "dagger", "dag": "dagger", "H": "H"}  # fmt: skip
 SIGNS_OF_MULTIPLICATION = frozenset(("cdot", "times", "*", "ast"))
 ELLIPSES = _words("dots ldots cdots vdots ddots dotsc dotsb dotsm dotso hdots")
+NO_OPERANDS = _words("forall pm mp cdot times ast hline star top overset stackrel not")
 FRACTIONS = frozenset(("frac", "dfrac", "tfrac", "cfrac"))
 EXPECTATIONS = frozenset(("E", "𝔼"))
 
