@@ -42,11 +42,11 @@ def replayed(statement: Statement, items: Sequence[Item], proof: Sequence[Part])
     Raises:
         Rejected: something in it does not hold.
     """
-    reading = accept(items, proof_reading(statement.theory), statement.theory.theory)
+    reading = accept(items, proof_reading(statement.theory, statement.equations), statement.theory.theory)
     if len(proof) != len(statement.equations):
         raise Rejected("every equation of the claim needs its proof")
     for part, equation in zip(proof, statement.equations, strict=True):
-        replay_part(part, equation, reading)
+        replay_part(part, equation, reading, statement.theory)
     return reading
 
 

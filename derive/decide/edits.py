@@ -15,6 +15,7 @@ from derive.terms import (
     Block,
     Dot,
     Expect,
+    Gradient,
     Identity,
     Inverse,
     Neg,
@@ -201,7 +202,7 @@ def _here(term: Term, letters: Sequence[Symbol], addends: Sequence[Term], whole:
     if isinstance(term, (Symbol, Transpose, Inverse)) and not getattr(term, "scalar", False):
         yield from _around(term, letters)
     found = shape_of(term)
-    if found and found[0] and not isinstance(term, (Sum, Zero)):
+    if found and found[0] and not isinstance(term, (Sum, Zero, Gradient)):
         yield from _alone(term, found, addends, whole)
 
 

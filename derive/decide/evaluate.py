@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from derive.decide.gradient import gradient_of
 from derive.decide.signals import expanded
 from derive.decide.workspace import Workspace
 from derive.kernel import Rejected
@@ -14,6 +15,7 @@ from derive.terms import (
     Dot,
     Equation,
     Expect,
+    Gradient,
     Identity,
     Inverse,
     Neg,
@@ -99,6 +101,11 @@ class Point:
             case Dot():
                 grid = lower(term, self.work.reading)
                 return stack([r for row in grid for r in beside([self.instance.evaluate(p) for p in row])])
+            case Gradient():
+                found = gradient_of(Equation(term, "=", Zero("", "")), self.work)
+                if found is None:
+                    raise ValueError("no rule gives this gradient")
+                return self.instance.evaluate(found)
             case Expect():
                 image = expanded(Equation(term, "=", Zero("", "")), self.work)[0]
                 return self.instance.evaluate(expect(image, self.work.reading.context))

@@ -14,6 +14,7 @@ from functools import lru_cache
 from derive.claim import Answer, Counterexample, Verdict
 from derive.context import consulting, terms_of
 from derive.decide.certificate import certificate, replayed
+from derive.decide.gradient import gradient_claim, gradient_of, images, inner
 from derive.decide.hypotheses import free_gains, inverses_in, names_in, not_needed, pruned, used, without
 from derive.decide.obligations import Undefined, Unjustified, justify
 from derive.decide.order import prove_order, prove_trace_order
@@ -37,7 +38,7 @@ REFUTE = 3.0  # seconds for a counterexample
 
 def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = False) -> Answer:
     """Decide a statement between matrices or traces."""
-    work = Workspace(statement.theory, time.monotonic() + seconds)
+    work = Workspace(statement.theory, time.monotonic() + seconds, statement.equations)
     try:
         _justify_given(work)
         for equation in statement.equations:
@@ -64,7 +65,7 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
 
 def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
     """Tell whether a statement is proved, its hypotheses satisfiable; nothing is refuted."""
-    work = Workspace(statement.theory, time.monotonic() + seconds)
+    work = Workspace(statement.theory, time.monotonic() + seconds, statement.equations)
     try:
         _justify_given(work)
         for equation in statement.equations:
@@ -133,6 +134,8 @@ def _part(equation: Equation, work: Workspace) -> Part | None:
         return None
     if rule == "expectation":
         return _expectation(equation, work)
+    if rule == "gradient":
+        return _gradient(equation, work)
     certificates = []
     for claim in claims(equation, rule, work.reading):  # type: ignore[arg-type]
         found = work.prove(claim.claim, claim.trace)
@@ -140,6 +143,20 @@ def _part(equation: Equation, work: Workspace) -> Part | None:
             return None
         certificates.append(found)
     return Part(rule, Proof(tuple(certificates)))
+
+
+def _gradient(equation: Equation, work: Workspace) -> Part | None:
+    """Prove what a gradient is, from what holds for every gain and then from everything."""
+    for image in images(equation, work):
+        try:
+            claim = gradient_claim(equation, image, work.reading)
+        except Rejected:
+            continue
+        under = work.prove(inner(equation, work.reading) - image, trace=True, every_gain=True)
+        after = work.prove(claim, trace=True) if under else None
+        if under and after:
+            return Part("gradient", Proof((under, after)), image=image)
+    return None
 
 
 def _expectation(equation: Equation, work: Workspace) -> Part | None:
@@ -158,8 +175,9 @@ def _refute(equation: Equation, work: Workspace) -> Counterexample | None:
     if rule == "expectation":
         return _refute_expectation(equation, work)
     if rule == "gradient":
-        (claim,) = claims(equation, "gradient", work.reading)
-        return work.refute(claim.claim, trace=True, seconds=REFUTE)
+        left = gradient_of(equation, work)
+        right = None if isinstance(equation.rhs, Zero) else lower(equation.rhs, work.reading)[0][0]
+        return work.refute(left, right, seconds=REFUTE) if left is not None else None
     if rule in ("trace", "trace order"):
         left, right = (lower_trace(side, work.reading) for side in (equation.lhs, equation.rhs))
         if left.rows != right.rows:
@@ -199,7 +217,10 @@ def _polys(equation: Equation, work: Workspace) -> list[Poly]:
             expect(inside(equation, work.reading), work.reading.context)
         return [expect(p, work.reading.context) for p in found]
     if rule == "gradient":
-        return [c.claim for c in claims(equation, rule, work.reading)]
+        found = gradient_of(equation, work)
+        if found is None:
+            raise Rejected("no rule gives this gradient")
+        return [found] if isinstance(equation.rhs, Zero) else [found, lower(equation.rhs, work.reading)[0][0]]
     grids: list[Grid] = [order_claim(equation, work.reading), lower(equation.lhs, work.reading)]
     return [p for grid in grids for row in grid for p in row]
 

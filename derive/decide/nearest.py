@@ -22,7 +22,7 @@ from derive.latex import latex
 from derive.matrix.instance import Instance
 from derive.matrix.refute import instances
 from derive.matrix.sample import sample
-from derive.terms import Dot, Equation, Expect, Symbol, Term, Trace, Transpose, lower, walk
+from derive.terms import Dot, Equation, Expect, Gradient, Symbol, Term, Trace, Transpose, lower, walk
 from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["Surroundings", "nearest", "with_equations"]
@@ -46,9 +46,8 @@ class Surroundings:
         """Return the surroundings of a statement; ``more`` are letters that have to have a value."""
         letters = tuple(_letters(statement))
         everything = list(dict.fromkeys([*letters, *statement.symbols, *more]))
-        order = any(e.relation not in ("=", ":=") for e in statement.equations)
         theory = _theory(statement, everything)
-        return cls(statement, letters, tuple(_points(theory, everything, order, _operators(statement))))
+        return cls(statement, letters, tuple(_points(theory, everything, statement.equations)))
 
     def holds(self, equations: Iterable[Equation]) -> bool:
         """Tell whether equations and inequalities hold at every instance."""
@@ -103,10 +102,10 @@ def _other_orders(equation: Equation) -> Iterator[tuple[Edit, Equation]]:
 
 
 def _is_plain(term: Term) -> bool:
-    """Tell whether a side is a letter, its transpose, derivative, trace or expectation."""
+    """Tell whether a side is a letter, its transpose, derivative or trace, an expectation or a gradient."""
     if isinstance(term, (Transpose, Dot, Trace)):
         return _is_plain(term.body)
-    return isinstance(term, (Symbol, Expect))
+    return isinstance(term, (Symbol, Expect, Gradient))
 
 
 def _trivial(changed: Equation) -> bool:
@@ -164,14 +163,9 @@ def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Sta
     return replace(statement, equations=equations, symbols=symbols, theory=_theory(statement, symbols))
 
 
-def _operators(statement: Statement) -> list[Term]:
-    sides = [side for e in statement.equations for side in (e.lhs, e.rhs)]
-    return [n for side in sides for n in walk(side) if isinstance(n, (Dot, Expect))]
-
-
-def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool, operators: Sequence[Term]) -> list[Point]:
+def _points(theory: ClaimTheory, letters: Sequence[Symbol], equations: tuple[Equation, ...]) -> list[Point]:
     """Return instances at which edits are tried: of the equations, or of everything for an inequality."""
-    work = Workspace(theory, time.monotonic() + 1.0)
+    work = Workspace(theory, time.monotonic() + 1.0, equations)
     problem = work.problem()
     if problem is None:
         return []
@@ -179,12 +173,13 @@ def _points(theory: ClaimTheory, letters: Sequence[Symbol], order: bool, operato
     polys = [Poly({((), (s.letter,)): 1}, s.rows, s.cols) for s in letters if s.name in known and not s.scalar]
     scalars = sorted({s.name for s in letters if s.scalar})
     polys += [Poly({((s,), ()): 1}, "", "") for s in scalars]
-    for node in operators:
+    nodes = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side)]
+    for node in (n for n in nodes if isinstance(n, (Dot, Expect))):
         try:
             polys += [p for row in lower(node, work.reading) for p in row]
         except Rejected:
             continue
-    plain = replace(problem, facts={})
+    plain, order = replace(problem, facts={}), any(e.relation not in ("=", ":=") for e in equations)
     found: list[Instance] = instances(problem, polys, POINTS) if order else sample(plain, polys, POINTS)
     return [Point(i, work) for i in found]
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+from derive.decide.gradient import check_gradient
 from derive.decide.order import TraceOrder, check_trace_order
 from derive.decide.signals import check_expectation, has_expectation
 from derive.derivation import Proof, Step, check
 from derive.kernel import Poly, Rejected
 from derive.terms import Equation, Gradient, Neg, Number, Product, Reading, Sum, Term, Trace, Zero, lower, lower_trace
+from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["Part", "Rule", "is_trace", "oriented", "replay_part", "rule_of"]
 
@@ -26,7 +28,7 @@ class Part:
     image: Poly | None = None  # what an expectation is that of, in signals with declared moments
 
 
-def replay_part(part: Part, equation: Equation, reading: Reading) -> None:
+def replay_part(part: Part, equation: Equation, reading: Reading, theory: ClaimTheory) -> None:
     """Accept an equation or inequality by its proof, or raise Rejected."""
     equation = oriented(equation, reading)
     if part.rule == "trace order":
@@ -40,11 +42,12 @@ def replay_part(part: Part, equation: Equation, reading: Reading) -> None:
             raise Rejected("an equation between expectations has a proof of its own")
         check_expectation(equation, part.image, part.proof.identities, reading)
         return
-    if (
-        part.order is not None
-        or part.image is not None
-        or part.rule not in ("identity", "trace", "gradient", "positivity", "comparison")
-    ):
+    if part.rule == "gradient":
+        if part.image is None or part.order is not None or part.proof != Proof(part.proof.identities):
+            raise Rejected("an equation with a gradient has a proof of its own")
+        check_gradient(equation, part.image, part.proof.identities, reading, theory)
+        return
+    if part.order or part.image or part.rule not in ("identity", "trace", "positivity", "comparison"):
         raise Rejected("the proof is of another kind than the rule")
     check(Step("claim", equation, part.rule, (), part.proof), reading, {})
 

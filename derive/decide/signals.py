@@ -92,8 +92,9 @@ def expanded(equation: Equation, work: Workspace) -> list[Poly]:
     signals = context.random | context.uncentred
     chosen = {n: p for n, p in relations.items() if _letters(p) & signals}
     centred = {n: p for n, p in chosen.items() if not _letters(p) & context.uncentred}
-    for equations in ({}, centred, chosen):
-        image = reduced(body, equations, context.alphabet)
+    away = sorted(context.uncentred)
+    for equations, eliminate in (({}, ()), (centred, ()), (chosen, ()), (chosen, away)):
+        image = reduced(body, equations, context.alphabet, eliminate)
         try:
             expect(image, context)
         except Rejected:

@@ -10,7 +10,8 @@ from fractions import Fraction
 from derive.claim import Counterexample
 from derive.context import names_of
 from derive.decide.ground import Introduced, Item, Lemma, accept
-from derive.kernel import Certificate, Poly, Rejected, Term, identity, replay
+from derive.derivation import DIRECTION
+from derive.kernel import Certificate, Letter, Poly, Rejected, Term, identity, replay
 from derive.matrix.bearing import bearing
 from derive.matrix.hypotheses import Hypotheses
 from derive.matrix.instance import unknowns
@@ -20,35 +21,54 @@ from derive.matrix.sample import holds_at, sample
 from derive.matrix.search import prove
 from derive.real import UNIT
 from derive.rules import Fact, Grid, Positivity, Square
-from derive.terms import Equation, Reading, Zero, lower
+from derive.spectral import RealPart
+from derive.terms import Equation, Gradient, Number, Reading, Symbol, Zero, lower, walk
 from derive.theory.claims.base import ClaimTheory
 
 SAMPLES = 2
 ATTEMPT = 1.5  # seconds for one search of a certificate
 
 
-def proof_reading(theory: ClaimTheory) -> Reading:
-    """Return what a proof may use: the theory without its cases, which hold of instances only."""
+def proof_reading(theory: ClaimTheory, equations: Iterable[Equation] = ()) -> Reading:
+    """Return what a proof may use: the theory without its cases, which hold of instances only.
+
+    Gradients that occur in some equations have letters for their directions.
+    """
     reading = theory.reading
     cases = reading.real.cases
     context = reading.context
     relations = {n: p for n, p in context.relations.items() if not any(n in names_of(c, [n]) for c in cases)}
     facts = {n: f for n, f in context.facts.items() if n not in cases}
-    return replace(reading, context=replace(context, relations=relations, facts=facts))
+    nodes = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Gradient)]
+    along = {DIRECTION + n.symbol.name: Letter(DIRECTION + n.symbol.name, n.symbol.rows, n.symbol.cols) for n in nodes}
+    alphabet = replace(context.alphabet, letters={**along, **context.alphabet.letters})
+    return replace(reading, context=replace(context, alphabet=alphabet, relations=relations, facts=facts))
 
 
 def conditions(theory: ClaimTheory) -> dict[str, Fact] | None:
-    """Return the assumed relations that only instances know, X ≠ 0, as facts; None if one has another form."""
+    """Return the assumed relations that only instances know as facts: X ≠ 0, Re λ_i(A) < 0; None for other forms."""
     found: dict[str, Fact] = {}
     for i, equation in enumerate(theory.conditions):
-        try:
-            grid = _difference(equation, theory.reading)
-        except Rejected:
+        fact = _condition(equation, theory.reading)
+        if fact is None:
             return None
-        if equation.relation != "≠":
-            return None
-        found[f"condition {i + 1}"] = Fact("nonzero", grid)
+        found[f"condition {i + 1}"] = fact
     return found
+
+
+def _condition(equation: Equation, reading: Reading) -> Fact | None:
+    letters = reading.context.alphabet.letters
+    match equation:
+        case Equation(Number() | Zero() as zero, ">", RealPart(Symbol(show_args=(name,)))) if name in letters:
+            matrix = Poly({((), (name,)): 1}, letters[name].rows, letters[name].cols)
+            return Fact("hurwitz", ((matrix,),)) if zero in (Zero("", ""), Number(Fraction(0))) else None
+        case Equation(_, "≠", _):
+            try:
+                return Fact("nonzero", _difference(equation, reading))
+            except Rejected:
+                return None
+        case _:
+            return None
 
 
 def _difference(equation: Equation, reading: Reading) -> Grid:
@@ -65,11 +85,12 @@ class Workspace:
 
     theory: ClaimTheory
     deadline: float
+    statements: tuple[Equation, ...] = ()
     reading: Reading = field(init=False)
     items: list[Item] = field(default_factory=list[Item])
 
     def __post_init__(self) -> None:
-        self.reading = proof_reading(self.theory)
+        self.reading = proof_reading(self.theory, self.statements)
 
     # -------------------------------------------------------------------------------------------- what is known
     @property
