@@ -15,7 +15,7 @@ __all__ = ["Node", "split_front_matter", "yaml_subset"]
 
 Node = str | list["Node"] | dict[str, "Node"]
 
-HEAD = re.compile(r"---[ \t]*\n(?P<body>(?:[^\n]*\n){0,2000}?)(?:---|\.\.\.)[ \t]*(?:\n|\Z)")
+HEAD = re.compile(r"---[ \t]*\n(?P<body>(?:[^\n]*\n){0,200000}?)(?:---|\.\.\.)[ \t]*(?:\n|\Z)")
 TOP = re.compile(r"(?P<key>[\w\-]+)[ \t]*:(?=[ \t\n]|\Z)")
 KEY = re.compile(r"""(?P<key>"(?:[^"\\]|\\.)*"|'(?:[^']|'')*'|[^\s"'#&*!|>%@`\[\]{},:][^:#]*?)[ \t]*:(?:[ \t]+|$)""")
 QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"|\'(?:[^\']|\'\')*\'')

@@ -19,9 +19,18 @@ LETTERS = re.compile(r"\\[A-Za-z]+|[A-Za-z]")
 
 def guessed(items: Sequence[Item]) -> list[tuple[Item, str]]:
     """Return claims with the theory that their document seems to be written in, and what speaks for it."""
-    files = dict.fromkeys(i.claim.file for i in items if not i.claim.theory and not i.message)
-    found = {file: _guess([i for i in items if i.claim.file == file and not i.claim.theory]) for file in files}
-    return [_with(item, *found.get(item.claim.file, ("", ""))) for item in items]
+    groups: dict[tuple[str, str], list[Item]] = {}
+    for item in items:
+        if not (item.claim.theory or item.message):
+            groups.setdefault(_group(item), []).append(item)
+    found = {key: _guess(group) for key, group in groups.items()}
+    return [_with(item, *found.get(_group(item), ("", ""))) for item in items]
+
+
+def _group(item: Item) -> tuple[str, str]:
+    """Return what the theory is guessed from: a whole document, or a claim that stands by itself."""
+    alone = not item.claim.file or item.claim.file.endswith(".jsonl")
+    return item.claim.file, item.claim.id if alone else ""
 
 
 def _with(item: Item, key: str, why: str) -> tuple[Item, str]:
@@ -70,4 +79,5 @@ def _confirmed(result: Result, results: Sequence[Result]) -> Result:
 
 def _letters(result: Result) -> set[str]:
     """Return the letters of a claim without accents and indices."""
-    return {re.sub(r"[_^{].*", "", name) or name for name in result.shapes}
+    found = (LETTERS.findall(re.split(r"[_^]", name)[0]) for name in result.shapes)
+    return {letters[-1] for letters in found if letters}

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from derive.check.item import Item
+from derive.check.item import Item, Setting
 from derive.check.result import ERROR, Result
 from derive.claim import Answer, Claim, Verdict
 from derive.errors import InputError
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from derive.interpret import Statement
     from derive.latex.syntax import Display
 
-__all__ = ["Decide", "judge", "read_item"]
+__all__ = ["Decide", "judge", "read_assumed", "read_item", "unreadable"]
 
 Decide = Callable[..., Answer]
 SHARE = 0.9  # of the time for a claim, for its decision
@@ -39,8 +39,6 @@ def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
     from derive.interpret import Misfit, echo, shapes
 
     claim = item.claim
-    if item.message:
-        return Result(claim, ERROR, message=item.message)
     try:
         display = read_item(item, claim.latex)
         if not (item.explicit or relates(display)):
@@ -54,6 +52,17 @@ def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
         return _error(claim, error)
     answer = replace(answer, certificate=_signed(answer, item, statement))
     return Result(claim, str(answer.verdict), answer, read_as, found_shapes)
+
+
+def unreadable(item: Item) -> Result | None:
+    """Return the result of a claim that cannot even be read; None if it can."""
+    if item.message:
+        return Result(item.claim, ERROR, message=_one_line(item.message))
+    try:
+        read_item(item, item.claim.latex)
+    except InputError as error:
+        return _error(item.claim, error)
+    return None
 
 
 def read_item(item: Item, latex: str) -> Display:
@@ -83,22 +92,27 @@ def _understood(item: Item, display: Display, *, theory: str = "") -> Statement:
     return understand(
         display,
         claim_theory(theory or item.claim.theory),
-        assume=_assumed(item),
+        assume=read_assumed(item.setting),
         scalar=item.claim.scalar,
         notation=item.setting.notation,
     )
 
 
-def _assumed(item: Item) -> list[Display]:
-    """Read what is assumed."""
+def read_assumed(setting: Setting) -> list[Display]:
+    """Read what is assumed.
+
+    Raises:
+        InputError: one of the assumptions cannot be read; says where it stands.
+    """
     found: list[Display] = []
-    for i, latex in enumerate(item.claim.assume):
+    for latex, origin in zip(setting.assume, setting.origins, strict=True):
+        from derive.latex.grammar import read
+
         try:
-            found.append(read_item(item, latex))
+            found.append(read(latex, macros=setting.macros))
         except InputError as error:
-            origins = item.setting.origins
-            origin = f" (in {origins[i]})" if i < len(origins) and origins[i] else ""
-            raise InputError(f"assume {latex[:60]!r}{origin}: {error}") from None
+            place = f" ({origin})" if origin else ""
+            raise InputError(f"assume {latex[:60]!r}{place}: {error}") from None
     return found
 
 

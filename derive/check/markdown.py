@@ -27,7 +27,7 @@ TOKEN = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 MATH_END = re.compile(r"(?:[^\\$]++|\\.|\$(?!\$))*+(?P<end>\$\$)", re.DOTALL)
-INLINE_END = re.compile(r"(?:[^\\$\n]++|\\.|\n(?![ \t]*\n))*+(?P<end>\$)", re.DOTALL)
+INLINE_END = re.compile(r"(?:[^\\$\n`]++|\\.|\n(?![ \t]*\n))*+(?P<end>\$)|`[^`\n]++`(?P<github>\$)", re.DOTALL)
 GOES_ON = re.compile(r"[ \t]*\n[ \t>]*\$\$(?=\s*(?:[-=+−<>]|\\(?:leq?|geq?|preceq|succeq|equiv)(?![A-Za-z])))")
 BRACKET_END = re.compile(r"\\\]")
 BLANK_LINE = re.compile(r"\n[ \t]*\n")
@@ -149,7 +149,7 @@ class Scanner:
     # ------------------------------------------------------------------------------------------- formulas
     def _inline(self, match: re.Match[str]) -> Reading:
         end = INLINE_END.match(self.text, match.end())
-        inside = self.text[match.end() : end.start("end")] if end else ""
+        inside = end[0][:-1] if end else ""
         if not end or not inside or inside != inside.strip() or self.text[end.end() : end.end() + 1].isdigit():
             return (), match.end()  # an amount of money
         return [Formula(inside.strip("`"), self.places.line(match.end()), displayed=False)], end.end()
@@ -169,7 +169,8 @@ class Scanner:
         if self._before(match.start())[1] or not end:
             return (), match.end()
         after = self.text[end.end() : self.places.end(end.end())]
-        if after.strip(" \t.,;") and not NAME_AFTER.match(self.text, end.end()):
+        link = after.startswith("(") and not after[1:2].isdigit()
+        if link or (after.strip(" \t.,;") and not NAME_AFTER.match(self.text, end.end())):
             return (), match.end()
         return self._displayed(match.start(), match.end(), end.start(), end.end())
 
@@ -178,7 +179,7 @@ class Scanner:
         if stop is not None:
             return self._displayed(match.start(), match.start(), stop, stop)
         message = f"expected \\end{{{match['environment']}}}, got the end of the text"
-        return [Broken(message, self.places.line(match.start()))], match.end()
+        return [Broken(message, self.places.line(match.start()))], len(self.text)
 
     def _displayed(self, start: int, inner: int, stop: int, end: int) -> Reading:
         """Return the display between two positions, with the name that stands beside it."""

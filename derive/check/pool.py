@@ -106,7 +106,7 @@ def _given_up(item: Item, why: str) -> Result:
 
 
 def judge_side_by_side(
-    items: Sequence[Item], seconds: float, jobs: int, progress: Callable[[int], None]
+    items: Sequence[Item], seconds: float, jobs: int, progress: Callable[[int, int], None]
 ) -> list[Result | None]:
     """Judge claims in ``jobs`` processes; results in the order of the claims, whatever ends first."""
     workers = [Worker(seconds) for _ in range(max(1, min(jobs, len(items))))]
@@ -125,7 +125,7 @@ def judge_side_by_side(
     try:
         futures = [executor.submit(judged, item) for item in items]
         for done, _ in enumerate(as_completed(futures), 1):
-            progress(done)
+            progress(done, len(items))
         return [future.result() for future in futures]
     finally:
         for worker in workers:

@@ -55,11 +55,11 @@ def _equations(source: str, name: str, offset: int, depth: int) -> list[Row]:
     kind, start, stop = inner
     name = _named(source[:start] + source[stop:])[1] or name
     body = source[start:stop]
-    if kind in ONE_EQUATION:
-        return _equations(_one_row(body) if kind == "multline" else body, name, offset + start, depth + 1)
-    if kind in COMMON_NUMBER:
+    if kind not in NUMBERED_ROWS:
         body, own = _named(body)
         name = own or name
+    if kind in ONE_EQUATION:
+        return _equations(_one_row(body) if kind == "multline" else body, name, offset + start, depth + 1)
     found = [row for at, text in _joined(body, kind) for row in _equations(text, "", offset + start + at, depth + 1)]
     several = len(found) > 1
     return [Row(r.latex, r.offset, r.name or (_part(name, i) if several else name)) for i, r in enumerate(found)]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from os import PathLike, fspath
 
 from derive.check.documents import STDIN, is_file, items_of, items_of_claims, items_of_stdin
 from derive.check.files import LIMIT
 from derive.check.item import Item, Setting
-from derive.check.judge import Decide, judge
+from derive.check.judge import Decide, judge, read_assumed, unreadable
 from derive.check.result import Report
 from derive.claim import Claim
 from derive.errors import InputError
@@ -64,17 +64,13 @@ def check(
 
 def _setting(theory: str, assume: tuple[str, ...], scalar: bool) -> Setting:
     """Check what holds for all claims."""
-    from derive.latex.grammar import read
     from derive.theory.claims import THEORIES
 
     if theory and theory not in THEORIES:
         raise InputError(f"theory: expected {', '.join(THEORIES)}, got {theory!r}")
-    for latex in assume:
-        try:
-            read(latex)
-        except InputError as error:
-            raise InputError(f"assume {latex[:60]!r}: {error}") from None
-    return Setting(theory, assume, ("",) * len(assume), scalar)
+    setting = Setting(theory, assume, ("",) * len(assume), scalar)
+    read_assumed(setting)
+    return setting
 
 
 def _collected(arguments: Sequence[Argument], setting: Setting) -> tuple[list[Item], list[str]]:
@@ -115,18 +111,27 @@ def _report(
     from derive.check.guessing import guessed, justified
 
     pairs = guessed(items)
-    told = [item for item, _ in pairs]
-    if jobs and decide is None and told:
+    found = [unreadable(item) for item, _ in pairs]
+    left = [item for (item, _), known in zip(pairs, found, strict=True) if known is None]
+    if jobs and decide is None and left:
         from derive.check.pool import judge_side_by_side
 
-        found = judge_side_by_side(told, timeout, jobs, lambda done: progress(done, len(told)))
+        judged = iter(judge_side_by_side(left, timeout, jobs, progress))
     else:
-        found = []
-        for done, item in enumerate(told, 1):
-            found.append(judge(item, timeout, decide))
-            progress(done, len(told))
-    results = [replace(r, guessed=why) for r, (_, why) in zip(found, pairs, strict=True) if r is not None]
+        judged = (judge(item, timeout, decide) for item in counted(left, progress))
+    results = [
+        replace(r, guessed=why)
+        for known, (_, why) in zip(found, pairs, strict=True)
+        if (r := known or next(judged)) is not None
+    ]
     return Report(tuple(justified(results)), tuple(errors))
+
+
+def counted(items: Sequence[Item], progress: Callable[[int, int], None]) -> Iterator[Item]:
+    """Iterate over claims, telling how many are done."""
+    for done, item in enumerate(items):
+        yield item
+        progress(done + 1, len(items))
 
 
 def usable_cores() -> int:

@@ -73,7 +73,7 @@ def _begin(text: str, match: re.Match[str], places: Places) -> Reading:
     if stop is not None:
         return [_formula(text, match.start(), stop, places, match["environment"] != "math")], stop
     message = f"expected \\end{{{match['environment']}}}, got the end of the text"
-    return [Broken(message, places.line(match.start()))], match.end()
+    return [Broken(message, places.line(match.start()))], len(text)
 
 
 def _formula(text: str, inner: int, stop: int, places: Places, displayed: bool) -> Formula:
