@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.functions import Infinity, Power, Quotient, Root
-from derive.interpret.shapes import Misfit, NotUnderstood, Shape, Typed, misfit
+from derive.interpret.shapes import NotUnderstood, Shape, Typed, misfit
 from derive.latex import latex
 from derive.latex import syntax as s
 from derive.spectral import Conjugate, Entry
@@ -68,9 +68,8 @@ def adapted(typed: Typed, shape: Shape, reader: Reader) -> Term:
     if (shapes.find(shape[0]), shapes.find(shape[1])) == UNIT:
         return product([term, Identity("1")])
     said = f"{latex(term)} is a number beside a matrix of {shapes.show(shape)}"
-    raise Misfit(
-        f"shapes: {said}; write {latex(product([term, Identity('n')]))} if a multiple of the identity is meant"
-    )
+    multiple = latex(product([term, Identity("n")]))
+    raise NotUnderstood(f"shapes: {said}; write {multiple}, or read all dimensions as 1 (scalar)")
 
 
 # ------------------------------------------------------------------------------------------------ products
@@ -102,7 +101,7 @@ def multiplied(parts: list[Typed], reader: Reader) -> Typed:
         shape = own if shape is None else (shape[0], own[1])
         group.append(term)
         last = term, own
-    return product(done + group), shape
+    return product(without_ones(done) if reader.scalar else done + group), shape
 
 
 def product(factors: list[Term]) -> Term:
@@ -111,6 +110,11 @@ def product(factors: list[Term]) -> Term:
     for factor in factors:
         flat += factor.factors if isinstance(factor, Product) else (factor,)
     return flat[0] if len(flat) == 1 else Product(tuple(flat))
+
+
+def without_ones(factors: list[Term]) -> list[Term]:
+    """Leave out factors 1, which identity matrices are where all dimensions are 1."""
+    return [f for f in factors if f != ONE] or [ONE]
 
 
 def square(typed: Typed, what: str, reader: Reader) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
 from derive.interpret.names import spell
-from derive.interpret.shapes import NotUnderstood, rebuilt
+from derive.interpret.shapes import Misfit, NotUnderstood, rebuilt
 from derive.latex import plain
 from derive.latex import syntax as s
 from derive.terms import Dot, Equation, Expect, Identity, Number, Symbol, Term, Transpose, Zero, walk
@@ -39,6 +39,8 @@ class Assumptions:
                 from derive.interpret.meaning import compared
 
                 self.found += [(self._ordered(e), False) for e in compared(node, reader)]
+        except Misfit as error:
+            raise NotUnderstood(f"an assumption: {error}") from None
         finally:
             reader.open = False
 
@@ -93,9 +95,14 @@ class Assumptions:
                 return False
 
     def _block(self, node: s.Related) -> bool:
-        """Take up X = [X_ss, X_sv; X_sv', X_vv], which X stands for at every time."""
+        """Take up X = [X_ss, X_sv; X_sv', X_vv], which X stands for at every time; a new letter or one that varies."""
         match node:
-            case s.Related((s.Name() as name, s.Matrix() as matrix), ("=" | ":=",)) if self.reader.named(name):
+            case s.Related((s.Name() as name, s.Matrix() as matrix), ("=" | ":=",)):
+                known = self.reader.named(name)
+                if known is not None and not (isinstance(known[0], Symbol) and known[0].args):
+                    raise NotUnderstood(
+                        f"{plain(known[0])}: expected a letter that is not constant, or a new one, as blocks"
+                    )
                 self.reader.blocks[spell(name, self.reader.notation)] = matrix
                 return True
             case _:

@@ -19,25 +19,25 @@ def guess(displays: Sequence[s.Display], notation: Mapping[str, str] | None = No
     A formula that has a meaning in no theory is left out, and so is one with fewer than two letters.
     """
     read = [d for d in displays if len(_letters(d)) >= ENOUGH]
-    fits = {key: [_has_meaning(d, key, notation) for d in read] for key in THEORIES}
-    meant = [i for i in range(len(read)) if any(fit[i] for fit in fits.values())]
-    possible = [key for key, fit in fits.items() if meant and all(fit[i] for i in meant)]
-    if len(possible) != 1:
-        return None
-    key = possible[0]
-    letters = dict.fromkeys(letter for i in meant for letter in _letters(read[i]))
-    said = f"{len(meant)} of {len(displays)} formulas" if len(displays) > 1 else "the formula"
-    return key, f"{said}, with the letters {', '.join(letters)}, can be read in this theory alone"
-
-
-def _has_meaning(display: s.Display, key: str, notation: Mapping[str, str] | None) -> bool:
     for scalar in (False, True):
-        try:
-            understand(display, claim_theory(key), scalar=scalar, notation=notation)
-        except NotUnderstood:
-            continue
-        return True
-    return False
+        fits = {key: [_has_meaning(d, key, notation, scalar) for d in read] for key in THEORIES}
+        meant = [i for i in range(len(read)) if any(fit[i] for fit in fits.values())]
+        possible = [key for key, fit in fits.items() if meant and all(fit[i] for i in meant)]
+        if len(possible) == 1:
+            letters = dict.fromkeys(letter for i in meant for letter in _letters(read[i]))
+            said = f"{len(meant)} of {len(displays)} formulas" if len(displays) > 1 else "the formula"
+            return possible[0], f"{said}, with the letters {', '.join(letters)}, can be read in this theory alone"
+        if meant:
+            return None
+    return None
+
+
+def _has_meaning(display: s.Display, key: str, notation: Mapping[str, str] | None, scalar: bool) -> bool:
+    try:
+        understand(display, claim_theory(key), scalar=scalar, notation=notation)
+    except NotUnderstood:
+        return False
+    return True
 
 
 def _letters(display: s.Display) -> list[str]:

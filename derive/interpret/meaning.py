@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 
-from derive.interpret.arithmetic import adapted, common
+from derive.interpret.arithmetic import adapted, common, exponent_text
 from derive.interpret.assume import Assumptions
 from derive.interpret.names import derivatives, spell
 from derive.interpret.reader import Reader
@@ -42,17 +43,50 @@ def understand(
         NotUnderstood: a letter or a form that has no meaning in the theory, or two.
         Misfit: shapes that do not fit.
     """
-    reader = Reader(theory, scalar=scalar, notation=notation)
+    reader = Reader(theory, scalar=scalar, notation=roles(notation or {}))
     reader.moving = _moving((display, *assume), reader)
     given = Assumptions(reader)
     for relation in (r for d in assume for r in relations(d)):
         given.read(relation)
-    equations = [e for relation in relations(display) for e in compared(relation, reader)]
+    try:
+        equations = [e for relation in relations(display) for e in compared(relation, reader)]
+    except Misfit as error:
+        if reader.blocks:  # letters that are given as blocks stand beside others that are not
+            raise NotUnderstood(str(error)) from None
+        raise
     equations = [settled(e, reader) for e in equations]
-    letters = {n.name for e in (*equations, *given.settled()) for side in (e.lhs, e.rhs) for n in walk(side)
-               if isinstance(n, Symbol)}  # fmt: skip
+    letters = _letters([*equations, *given.settled()])
     extended = given.extend(theory.about(letters))
     return Statement(tuple(equations), symbols_of(equations), extended, scalar, given.names)
+
+
+def roles(notation: Mapping[str, str]) -> dict[str, str]:
+    """Return a notation by the spelling of its letters, {"\\\\hat x": "\\\\bar x"} as {"hat x": "bar x"}."""
+    return {spelling(mine): spelling(role) for mine, role in notation.items()}
+
+
+@lru_cache(maxsize=256)
+def spelling(letter: str) -> str:
+    """Return how a letter that is written in LaTeX is spelled.
+
+    Raises:
+        NotUnderstood: it is no letter.
+    """
+    from derive.latex.grammar import read
+
+    match read(letter).statements:
+        case (s.Name() as name,):
+            return spell(name, {})
+        case (s.Raised(s.Name() as name, exponent),):
+            return f"{spell(name, {})}^{exponent_text(exponent)}"
+        case _:
+            raise NotUnderstood(f"a notation: expected a letter such as P or \\hat{{x}}_k, got {letter}")
+
+
+def _letters(equations: Sequence[Equation]) -> set[str]:
+    """Return the names of the letters in equations, and the times at which they are used as "@τ"."""
+    found = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol)]
+    return {n.name for n in found} | {f"@{time}" for n in found for time in n.args}
 
 
 # ------------------------------------------------------------------------------------------------ relations

@@ -17,27 +17,38 @@ from derive.terms import Symbol, Term
 from derive.theory.claims.base import INDEX, ClaimTheory, at_index, count
 
 LETTERS = {char: name for name, char in GREEK.items()}
-SAME = {"overline": "bar", "widehat": "hat", "widetilde": "tilde", "varphi": "varphi", "check": "hat"}
+SAME = {"overline": "bar", "widehat": "hat", "widetilde": "tilde"}
 CONDITIONAL = re.compile(r"^(.+)\|(.+)$")
 DOT = {"dot": 1, "ddot": 2}
 MARKS = {mark: name for name, (_, _, mark) in ACCENTS.items()}
 
 
 def spell(name: Name, notation: Mapping[str, str]) -> str:
-    """Return the spelling of a name, in the letters of the theory."""
+    """Return the spelling of a name, in the letters of the theory.
+
+    Raises:
+        NotUnderstood: a letter whose role the notation gives to another.
+    """
     letter = LETTERS.get(name.letter, name.letter)
-    plain = " ".join([*(SAME.get(a, a) for a in name.accents if a not in DOT), letter])
-    sub, sup = tidy(name.sub), tidy(name.sup)
-    full = plain + (f"_{sub}" if sub else "") + (f"^{sup}" if sup else "")
-    if full in notation:
-        return notation[full]
-    if plain in notation:
-        plain = notation[plain]
-    elif letter in notation:
-        plain = " ".join([*(SAME.get(a, a) for a in name.accents if a not in DOT), notation[letter]])
-    if "_" in plain and sub:
-        return f"{plain},{sub}" + (f"^{sup}" if sup else "")
-    return plain + (f"_{sub}" if sub else "") + (f"^{sup}" if sup else "")
+    accents = [SAME.get(a, a) for a in name.accents if a not in DOT]
+    marks = (f"_{tidy(name.sub)}" if name.sub else "") + (f"^{tidy(name.sup)}" if name.sup else "")
+    plain = " ".join([*accents, letter])
+    if not notation:
+        return plain + marks
+    if plain + marks in notation:
+        return notation[plain + marks]
+    if plain not in notation and letter not in notation:
+        _check_free(plain, notation)
+        return plain + marks
+    base = notation[plain] if plain in notation else " ".join([*accents, notation[letter]])
+    joined = base + (marks.replace("_", ",", 1) if "_" in base and marks.startswith("_") else marks)
+    return joined
+
+
+def _check_free(letter: str, notation: Mapping[str, str]) -> None:
+    taken = next((mine for mine, role in notation.items() if role == letter), None)
+    if taken is not None:
+        raise NotUnderstood(f"{letter}: the notation gives its role to {taken}; say what {letter} stands for")
 
 
 def tidy(index: str) -> str:

@@ -210,21 +210,20 @@ def integrated(node: s.Integrated, reader: Reader) -> Typed:
 
 
 def summed(node: s.Summed, reader: Reader) -> Typed:
-    """Read a sum over the eigenvalues; where all dimensions are 1, it is its only term."""
+    """Read a sum over the eigenvalues, or the zeros or poles; where all dimensions are 1, it is its only term."""
     body, shape = reader.read(node.body)
-    if node.sign != "sum":
-        raise NotUnderstood("a product over an index is not read")
-    if reader.scalar:
-        return body, shape
-    families = [n for n in walk(body) if isinstance(n, Symbol) and n.name in reader.theory.theory.families]
     value = as_number((body, shape), "a sum", reader)
-    known = reader.theory.theory
+    known, count = reader.theory.theory, reader.theory.names.get("m")
+    whole = node.upper is None or (count is not None and reader.read(node.upper)[0] == count)
+    families = [n for n in walk(body) if isinstance(n, Symbol) and n.name in known.families]
+    if node.sign != "sum" or not whole or count is None:
+        raise NotUnderstood("a sum: expected one over all eigenvalues, as in \\sum_{i=1}^{m} \\Re[\\lambda_i(A)]")
     if families:
         family = known.families[families[0].name]
-        index, count = known.symbols[family.index], known.symbols[family.count]
-        if node.upper is None or reader.read(node.upper)[0] == count:
-            return Total(value, index, count), None
-    raise NotUnderstood("a sum: expected one over all eigenvalues, as in \\sum_{i=1}^{m} \\Re[\\lambda_i(A)]")
+        return Total(value, known.symbols[family.index], known.symbols[family.count]), None
+    if reader.scalar and node.upper is not None:
+        return value, None
+    raise NotUnderstood("a sum: nothing in it depends on its index")
 
 
 # ------------------------------------------------------------------------------------------------ block matrices

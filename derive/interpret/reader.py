@@ -47,9 +47,13 @@ class Reader:
             Misfit: its shapes do not fit.
         """
         handler = HANDLERS.get(type(node))
-        if handler is None:
-            raise NotUnderstood(f"{type(node).__name__.lower()}: expected a term")
-        return handler(node, self)
+        try:
+            if handler is None:
+                raise NotUnderstood(f"{KINDS.get(type(node), 'this')} has no meaning here; expected a term")
+            return handler(node, self)
+        except NotUnderstood as error:
+            error.span = error.span or node.span
+            raise
 
     def call(self, function: str, arguments: list[Typed]) -> Typed:
         """Return a named function of terms that are read already."""
@@ -57,7 +61,9 @@ class Reader:
 
     # -------------------------------------------------------------------------------------------- names
     def typed(self, term: Term) -> Typed:
-        """Return a letter with its shape."""
+        """Return a letter with its shape; where all dimensions are 1, the only eigenvalue of A is A."""
+        if self.scalar and isinstance(term, Symbol) and term.name == "λ":
+            term = self.theory.names["A"]
         if self.scalar or not isinstance(term, Symbol) or term.scalar:
             return term, None
         return term, (term.rows, term.cols)
@@ -245,6 +251,12 @@ def _is_greek(letter: str) -> bool:
     return GREEK.get(letter, letter) in GREEK_NUMBERS
 
 
+KINDS: Mapping[type[s.Node], str] = {
+    s.Listed: "a list",
+    s.Cases: "a definition by cases",
+    s.Related: "a relation inside a formula",
+    s.Given: "a conditional expectation",
+}
 HANDLERS: Mapping[type[s.Node], Callable[..., Typed]] = {
     **arithmetic.HANDLERS,
     **operators.HANDLERS,

@@ -15,7 +15,12 @@ UNKNOWN, BESIDE = "?", "|"  # an unknown dimension is ?1, ?2, ...; that of a blo
 
 
 class NotUnderstood(InputError):  # noqa: N818 - what a reader says of a formula
-    """A formula that has no meaning in the theory, or two; the message says which letter or place is the matter."""
+    """A formula that has no meaning in the theory, or two; the message says which letter or place is the matter.
+
+    ``span`` are the columns of the smallest piece of the formula that has none, if they are known.
+    """
+
+    span: tuple[int, int] = (0, 0)
 
 
 class Misfit(NotUnderstood):

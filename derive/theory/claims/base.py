@@ -46,7 +46,7 @@ class ClaimTheory:
     outline: Outline | None = field(default=None, compare=False, repr=False)
 
     def about(self, letters: Collection[str]) -> ClaimTheory:
-        """Return the theory with no more than what bears on the given letters."""
+        """Return the theory with no more than what bears on the given letters; "@τ" says that one is used at τ."""
         return about(self.outline, frozenset(letters)) if self.outline else self
 
     @cached_property
@@ -105,6 +105,11 @@ class Draft:
     def of(self, *names: str) -> list[Symbol]:
         """Return letters by their names; one with an index is declared."""
         return [self.theory.symbols.get(name) or self._indexed(name) for name in names]
+
+    def times(self) -> list[str]:
+        """Return the times at which letters are used, t first."""
+        found = sorted(name[1:] for name in self.used if name.startswith("@"))
+        return ["t", *(time for time in found if time != "t")]
 
     def at(self, stem: str, index: str) -> Symbol:
         """Return the letter of a family at an index."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 from derive.context import Theory
 from derive.functions import PI
@@ -18,7 +19,6 @@ from derive.theory.claims.base import Draft, Outline
 KEY, LECTURE = "kalman-bucy", "kalman-bucy"
 SIGNALS = ("x", "xbar", "xtilde", "y", "ybar", "z", "ztilde", "e", "u", "w", "v")
 ON_THE_WAY = ("P(t)", "K(t)", *SIGNALS)
-TIMES = ("t", "τ", "t+τ", "t-τ", "t0")
 
 
 @cache
@@ -42,7 +42,7 @@ def outline() -> Outline:
     )
     _signals(t)
     _spectra(t)
-    usual = {"A", "C", "W", "V", "P", "K", *ON_THE_WAY, "Sigma", "Phi_y(s)", "Phi_y(ω)"}
+    usual = {"A", "C", "W", "V", "P", "K", "@τ", "@t0", *ON_THE_WAY, "Sigma", "Phi_y(s)", "Phi_y(ω)"}
     return Outline(KEY, t.title, t, _names(t), declare, frozenset(usual))
 
 
@@ -160,6 +160,7 @@ def _steady(d: Draft, cross: bool) -> None:
 def _transient(d: Draft, cross: bool) -> None:
     A, C, W, V, N, P, K = d.of("A", "C", "W", "V", "N", "P(t)", "K(t)")
     d.assume("P(t) >= 0", P, "⪰", text="a covariance")
+    d.assume("P(0) > 0", P.at("t0"), "≻", text="the initial state is uncertain in every direction")
     right = rate(A, C, W, V, P, N if cross else None)
     by = ("observer", "Riccati equation") if cross else (LECTURE, "P(t)")
     d.define("P(t)", Dot(P), right, by=by)
@@ -173,7 +174,7 @@ def _dynamics(d: Draft) -> None:
     x, x_hat, error, y, y_hat, z, gap, e, u, w, v = d.of(*SIGNALS)
     d.define("plant", Dot(x), A * x + w)
     d.define("filter", Dot(x_hat), A * x_hat + u)
-    for time in TIMES:
+    for time in d.times():
         d.define(_at("output", time), y.at(time), C * x.at(time) + v.at(time))
         d.define(_at("true output", time), z.at(time), C * x.at(time))
         d.define(_at("output estimate", time), y_hat.at(time), C * x_hat.at(time))
@@ -192,9 +193,8 @@ def _moments(d: Draft, cross: bool) -> None:
     """Declare what white noises have for correlation, among them and with the error."""
     W, V, N, P = d.of("W", "V", "N", "P(t)")
     error, w, v = d.of("xtilde", "w", "v")
-    for one, two in (("t", "τ"), ("t+τ", "t"), ("t", "t+τ"), ("t", "t-τ"), ("t", "t"), ("τ", "t")):
-        delta = Delta(one, two)
-        name = f"at {one}, {two}"
+    for one, two in product(d.times(), repeat=2):
+        delta, name = Delta(one, two), f"at {one}, {two}"
         if one != two:
             d.define(f"w and w {name}", Expect(w.at(one) * w.at(two).T), W * delta)
             d.define(f"v and v {name}", Expect(v.at(one) * v.at(two).T), V * delta)

@@ -47,7 +47,9 @@ HYPOTHESES = {
         "N(t) >= 0", "N(τ) >= 0", "N(τ1) >= 0", "X(t) >= 0", "X(t0) >= 0", "joint covariance at t",
         "joint covariance at t0", "x(t0) and n(τ)", "Phi(τ,τ)", "Phi(τ1,τ1)", "Phi(τ2,τ2)",
     },
-    "kalman-bucy": {"P >= 0", "P(t) >= 0", "joint noise", "w and v at t, t"},
+    "kalman-bucy": {
+        "P >= 0", "P(t) >= 0", "P(0) > 0", "joint noise", "w and v at t, t", "w and v at t0, t0", "w and v at τ, τ",
+    },
     "luenberger-dt": {"P_k >= 0"},
     "lqr-ct": {"S >= 0", "S(t) >= 0"},
     "lqr-dt": {"S_{k-1} >= 0"},
