@@ -16,7 +16,6 @@ from flint import arb, arb_mat
 from numpy.typing import NDArray
 
 from derive.numeric.balls import floats, identity, middle, norm, positive_definite, working_bits
-from derive.numeric.modes import distance_to_stability
 from derive.numeric.newton import Equation, lyapunov_in_balls, refined
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import solve_riccati
@@ -24,8 +23,9 @@ from lmi.certificate import Bounds, Certificate, ExactPlant, exact_plant, verify
 from lmi.certificate_arithmetic import Exact
 from lmi.certification_boundary import without_boundary
 from lmi.certification_frame import Frame, Grid, binary_logarithm, sizes, unit_variances
+from lmi.certification_instability import instability, is_stable
 
-__all__ = ["Certified", "NotCertifiedError", "certified"]
+__all__ = ["Certified", "NotCertifiedError", "UnstableGainError", "certified"]
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -60,6 +60,10 @@ class NotCertifiedError(ArithmeticError):
     """No certificate was found; the message says what stood in the way."""
 
 
+class UnstableGainError(NotCertifiedError):
+    """The gain is proved not to stabilise; the message says how."""
+
+
 class Certified(NamedTuple):
     """A certificate that was verified, and what it proves."""
 
@@ -78,7 +82,8 @@ def certified(plant: Plant, gain: Matrix | None = None) -> Certified:
         The certificate and what it proves.
 
     Raises:
-        NotCertifiedError: none was found.
+        UnstableGainError: the gain is proved not to stabilise.
+        NotCertifiedError: none was found, and no proof that there is none.
 
     Example:
         >>> from derive.numeric.plant import example_plant
@@ -88,6 +93,9 @@ def certified(plant: Plant, gain: Matrix | None = None) -> Certified:
     """
     if plant.n > LARGEST:
         raise NotCertifiedError(f"{plant.n} states, certificates are made for up to {LARGEST}")
+    looks_stable = gain is None or is_stable(plant.A - gain @ plant.C, plant.time)
+    if not looks_stable:
+        _require_stable(plant, gain)
     problem = "no gain found that makes A - LC stable"
     for propose in _attempts(plant, exact_plant(plant), gain):
         try:
@@ -98,7 +106,15 @@ def certified(plant: Plant, gain: Matrix | None = None) -> Certified:
                 problem = ", ".join(check.statement for check in found if not check.holds)
         except (ArithmeticError, ValueError) as error:
             problem = " ".join(str(error).split())
+    if looks_stable:
+        _require_stable(plant, gain)
     raise NotCertifiedError(problem)
+
+
+def _require_stable(plant: Plant, gain: Matrix | None) -> None:
+    unstable = None if gain is None else instability(plant, gain)
+    if unstable is not None:
+        raise UnstableGainError(f"the gain does not stabilise: {unstable}")
 
 
 Proposals = Callable[[], list[Certificate]]
@@ -107,17 +123,13 @@ Proposals = Callable[[], list[Certificate]]
 def _attempts(plant: Plant, fixed: ExactPlant, gain: Matrix | None) -> Iterator[Proposals]:
     """Iterate over ways to propose certificates, the cheapest first."""
     given = None if gain is None else Exact.of_floats(gain.tolist())
-    if given is None and not (plant.W.any() or plant.N.any()) and _looks_stable(plant):
+    if given is None and not (plant.W.any() or plant.N.any()) and is_stable(plant.A, plant.time):
         yield lambda: _without_noise(plant, fixed)
     solution = solve_riccati(plant)
     if solution.status == "stabilising":
         yield lambda: _from_solution(plant, fixed, given, solution.P)
     for bits in PRECISIONS:
         yield lambda bits=bits: _from_gain(plant, fixed, given, bits)
-
-
-def _looks_stable(plant: Plant) -> bool:
-    return bool(np.all(distance_to_stability(np.linalg.eigvals(plant.A), plant.time) < 0))
 
 
 def _without_noise(plant: Plant, fixed: ExactPlant) -> list[Certificate]:

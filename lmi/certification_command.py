@@ -77,24 +77,16 @@ def certify_gain(plant: Plant, gain: Matrix, output: str | None) -> tuple[list[s
     Returns:
         Lines to print, and 0, 1 or 3 for the command line.
     """
-    from derive.numeric.modes import distance_to_stability
     from lmi.certificate_file import write_certificate
     from lmi.certificate_report import proved_lines
-    from lmi.certification import NotCertifiedError, certified
-    from lmi.certification_instability import instability
+    from lmi.certification import NotCertifiedError, UnstableGainError, certified
 
-    modes = np.linalg.eigvals(plant.A - gain @ plant.C)
-    looks_stable = bool(np.all(distance_to_stability(modes, plant.time) < 0))
-    unstable = None if looks_stable else instability(plant, gain)
-    if unstable is None:
-        try:
-            certificate, bounds = certified(plant, gain)
-        except NotCertifiedError as error:
-            unstable = instability(plant, gain) if looks_stable else None
-            if unstable is None:
-                return [f"not certified: {error}"], 3
-        else:
-            if output is not None:
-                write_certificate(certificate, output)
-            return [*proved_lines(certificate, bounds), "certified"], 0
-    return [f"refuted: the gain does not stabilise: {unstable}"], 1
+    try:
+        certificate, bounds = certified(plant, gain)
+    except UnstableGainError as error:
+        return [f"refuted: {error}"], 1
+    except NotCertifiedError as error:
+        return [f"not certified: {error}"], 3
+    if output is not None:
+        write_certificate(certificate, output)
+    return [*proved_lines(certificate, bounds), "certified"], 0

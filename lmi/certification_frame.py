@@ -18,7 +18,7 @@ __all__ = ["Frame", "Grid", "binary_logarithm", "unit_variances"]
 
 Matrix = NDArray[np.floating[Any]]
 
-SMALLEST_VARIANCE = 2.0**-40
+SMALLEST_VARIANCE = 2.0**-100
 """Variances below this, relative to the largest, count as this when the coordinates are chosen."""
 
 

@@ -2,23 +2,25 @@
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
-from derive.numeric.modes import balancing
+from derive.numeric.modes import Matrix, Time, balancing, distance_to_stability
 from derive.numeric.plant import Plant
 from lmi.certificate import exact_plant
 from lmi.certificate_arithmetic import Exact, TooLargeError
 from lmi.certificate_stability import proved_unstable, stabilises
 
-__all__ = ["instability"]
-
-Matrix = NDArray[np.floating[Any]]
+__all__ = ["instability", "is_stable"]
 
 SHARES = (0.99, 0.9, 0.7, 0.5, 0.3, 0.1)
 """Fractions of the growth of the fastest mode that are tried as the proved growth."""
+
+
+def is_stable(loop: Matrix, time: Time) -> bool:
+    """Tell whether computed eigenvalues are stable; that proves nothing."""
+    return bool(np.all(distance_to_stability(np.linalg.eigvals(loop), time) < 0))
 
 
 def instability(plant: Plant, gain: Matrix) -> str | None:
