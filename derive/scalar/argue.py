@@ -24,12 +24,12 @@ from derive.scalar.flint_ring import FlintRing
 from derive.scalar.ideal import Ideal
 from derive.scalar.instances import Instance, Instances
 from derive.scalar.proof import (
-    Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of,
+    Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of, plain, upright,
 )  # fmt: skip
 from derive.scalar.ratio import Beyond, Numbers, Ratio
 from derive.scalar.real_closed import Budget, Fact as Claim, ask
 from derive.scalar.search import Remainders, contradiction, products
-from derive.scalar.system import Case, Split, System, sign_of, system
+from derive.scalar.system import Case, Split, System, proportional, sign_of, system
 
 __all__ = ["Failed", "Prover", "Unknown"]
 
@@ -90,8 +90,9 @@ class Prover:
         except Split as split:
             if len(cases) >= DEPTH:
                 raise Unknown("too many cases") from None
-            above = self.prove([*cases, ("nonnegative", split.poly)])
-            return Tree(split.poly, above, self.prove([*cases, ("nonnegative", -split.poly)]))
+            poly = plain(split.poly)
+            above = self.prove([*cases, ("nonnegative", poly)])
+            return Tree(poly, above, self.prove([*cases, ("nonnegative", -poly)]))
         except Choose as choose:
             choice = [(kind, self.ring.poly(p)) for kind, p in self.systems[-1].alternatives[choose.number]]
             return Either(choose.number, tuple(self.prove([*cases, case]) for case in choice))
@@ -156,6 +157,7 @@ class _Search:
                 for _ in range(e // 2):
                     q = q * f
                 s = s * f if e % 2 else s
+        q = q if upright(self.ring.poly(q)) else -q
         self.steps.append(Square(self.ring.poly(q), self.ring.poly(s)))
         if not known_fact(self.known, s, "≥"):
             self.steps.append(self.reason("≥", s))
@@ -207,7 +209,7 @@ class _Search:
             raise Failed
 
     def _by_factors(self, relation: str, poly: Any) -> Reason | None:
-        number, factors = self.ring.factors(poly)
+        number, factors = self._factors(poly)
         if len(factors) == 1 and factors[0][1] == 1:
             return None
         found, total = list[Factor](), 1 if number > 0 else -1
@@ -219,12 +221,22 @@ class _Search:
             total *= factor.sign if relation != "≠" and e % 2 else 1
         return Reason("product", number, tuple(found)) if relation == "≠" or total > 0 else None
 
+    def _factors(self, poly: Any) -> tuple[Fraction, list[tuple[Any, int]]]:
+        """Return number and factors, each as it is written."""
+        number, factors = self.ring.factors(poly)
+        found: list[tuple[Any, int]] = []
+        for f, e in factors:
+            written = self.ring.of(plain(self.ring.poly(f)))
+            ratio = proportional(self.ring, f, written) or Fraction(1)
+            number, found = number * ratio**e, [*found, (written, e)]
+        return number, found
+
     def _factor(self, relation: str, f: Any, power: int) -> Factor | None:
-        plain = self.ring.poly(f)
+        written = self.ring.poly(f)
         if relation == "≥" and power % 2 == 0:
-            return Factor(plain, power, 1)
+            return Factor(written, power, 1)
         if relation == "≠" or power % 2 == 0:
-            return Factor(plain, power, 1, self.reason("≠", f))
+            return Factor(written, power, 1, self.reason("≠", f))
         try:
             sign = sign_of(self.known, f)
         except Split:
@@ -233,15 +245,15 @@ class _Search:
                 return None
             sign = -1 if -1 in signs else 1
         try:
-            return Factor(plain, power, sign, self.reason(relation, f if sign > 0 else -f))
+            return Factor(written, power, sign, self.reason(relation, f if sign > 0 else -f))
         except Failed:
             return None
 
     # ------------------------------------------------------------------------------------- z3 and certificates
     def _by_z3(self, relation: str, poly: Any) -> Reason:
         facts = facts_of(self.known)
-        plain = self.ring.poly(poly)
-        against = (FALSE[relation], plain if relation == "≠" else -plain)
+        claim = self.ring.poly(poly)
+        against = (FALSE[relation], claim if relation == "≠" else -claim)
         found = ask({**facts, NEGATION: against}, choices_of(self.known), self.prover.budget, 12)
         if found.possible is None:
             raise Unknown("z3 has no answer within its budget")
@@ -251,10 +263,10 @@ class _Search:
         if not self.prover.certificates:
             return Reason("z3", used=used)
         if relation == ">" and known_fact(self.known, poly, "≥"):
-            return Reason("apart", factors=(Factor(plain, 1, 1, self._by_z3("≠", poly)),))
+            return Reason("apart", factors=(Factor(plain(claim), 1, 1, self._by_z3("≠", poly)),))
         wider = tuple(n for n, (kind, _) in facts.items() if n in used or kind in ("positive", "nonzero"))
         for names in (used, wider) if len(wider) > len(used) else (used,):
-            sign = self._certificate(relation, plain, {n: facts[n] for n in names})
+            sign = self._certificate(relation, claim, {n: facts[n] for n in names})
             if sign is not None:
                 return Reason("sign", sign=sign, used=tuple(n for n in names if n in _named(sign)))
         choices = [i for i in range(len(self.known.alternatives)) if f"choice {i}" in found.core]

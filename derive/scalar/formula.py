@@ -14,10 +14,10 @@ from typing import Any
 
 from derive.derivation import Lecture, Step
 from derive.errors import InputError
-from derive.functions import Definite, Exp, Limit, Log, Rate, put, value
+from derive.functions import Definite, Exp, Limit, Log, Rate, Start, put, value
 from derive.kernel import Rejected
 from derive.scalar.program import Program
-from derive.terms import Equation, Number, Product, Reading, Symbol, Term, Zero
+from derive.terms import Equation, Number, Product, Reading, Symbol, Term
 
 __all__ = ["Formula", "Sequence", "behind", "learned"]
 
@@ -26,16 +26,13 @@ ONE = Number(Fraction(1))
 
 @dataclass(frozen=True)
 class Sequence:
-    """An expression in the number of steps k that stands for a letter: both start alike and go on alike.
-
-    The expression is k itself, or exp(k ln x), the power of x. That two such sequences are the same is the principle of
-    induction, which no certificate carries; what it needs, two steps do.
+    """A power exp(k ln x) of x after k steps that stands for a letter: the sequence that starts at one, times x a step.
 
     Attributes:
-        expression: k, or exp(k ln x).
+        expression: exp(k ln x).
         letter: what it stands for in the lecture.
-        start: the step that says what the letter is at the start: 0, or 1.
-        following: the step that says what it is next: 1 more, or x times as much.
+        start: the definition that says that the letter is one at the start.
+        following: the definition that says that it is x times as much next.
     """
 
     expression: Term
@@ -47,11 +44,10 @@ class Sequence:
         """Return what the two steps have to say; ``following`` is the next letter."""
         match self.expression:
             case Exp(Product((Symbol(name="k"), Log(base)))):
-                return Equation(self.letter, "=", ONE), Equation(following, "=", base * self.letter)
-            case Symbol(name="k"):
-                return Equation(self.letter, "=", Zero("", "")), Equation(following, "=", ONE + self.letter)
+                first = Start(self.letter, Symbol("k", scalar=True))
+                return Equation(first, "=", ONE), Equation(following, "=", base * self.letter)
             case _:
-                raise InputError("a sequence is k, or a power exp(k ln x)")
+                raise InputError("a sequence is a power exp(k ln x)")
 
 
 @dataclass(frozen=True)
@@ -82,8 +78,7 @@ class Formula:
     @property
     def derivation(self) -> tuple[Step, ...]:
         """The steps that prove the formula, its branches and what they mean, with certificates."""
-        ends = (name for s in self.sequences for name in (s.start, s.following))
-        names = dict.fromkeys((self.step, *self.roles, *(b.step for b in self.program.branches), *ends))
+        names = dict.fromkeys((self.step, *self.roles, *(b.step for b in self.program.branches)))
         lecture = self.lecture()
         return tuple(lecture.step(name) for name in names if name in {s.name for s in lecture.steps})
 
@@ -156,7 +151,7 @@ class Formula:
         return term
 
     def _check_sequence(self, sequence: Sequence, reading: Reading) -> None:
-        said = [self.lecture().step(name).statement for name in (sequence.start, sequence.following)]
+        said = [self.lecture().theory.statement(name) for name in (sequence.start, sequence.following)]
         for wanted, found in zip(sequence.ends(said[1].lhs), said, strict=True):
             sides = zip((wanted.lhs, wanted.rhs), (found.lhs, found.rhs), strict=True)
             if not all(_same(one, two, reading) for one, two in sides):

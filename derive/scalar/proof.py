@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from math import gcd, lcm
 from typing import Any
 
 from derive.interpret.statement import Statement
@@ -21,7 +22,7 @@ from derive.scalar.system import Case, Split, System, proportional, sign_of, sys
 
 __all__ = [
     "ANSWERS", "Either", "Factor", "Leaf", "Proof", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of", "known_fact",
-    "leaves", "needs_of",
+    "leaves", "needs_of", "upright",
 ]  # fmt: skip
 
 STRICT = {"≥": False, ">": True, "≠": True}
@@ -153,6 +154,20 @@ def claims_of(statement: Statement, numbers: Numbers) -> Iterator[tuple[str, Any
         yield relation, difference.top if relation in "=≠" else numbers.same_sign(difference)
 
 
+def upright(poly: Poly) -> bool:
+    """Tell which of q and -q is written: the one whose first coefficient is positive."""
+    return not poly.terms or poly.terms[min(poly.terms)] > 0
+
+
+def plain(poly: Poly) -> Poly:
+    """Return the positive or negative multiple that is written: whole numbers without common factor, upright."""
+    if not poly.terms:
+        return poly
+    whole = lcm(*(c.denominator for c in poly.terms.values()))
+    size = Fraction(gcd(*(int(c * whole) for c in poly.terms.values())), whole)
+    return poly.scale(1 / size if upright(poly) else -1 / size)
+
+
 def needs_of(relation: str, poly: Any, ring: Any) -> list[tuple[str, Any]]:
     """Return what has to be shown of signs; an equation that is one of polynomials needs nothing."""
     if relation != "=":
@@ -190,7 +205,7 @@ class _Replay:
 
     def square(self, poly: Any) -> tuple[Any, Any]:
         step = self._next()
-        if not isinstance(step, Square) or step.q * step.q * step.s != poly:
+        if not isinstance(step, Square) or step.q * step.q * step.s != poly or not upright(step.q):
             raise Rejected("a radicand is no square times the rest")
         if not known_fact(self.known, step.s, "≥"):
             self.check("≥", step.s)
@@ -225,7 +240,8 @@ class _Replay:
                 self._product(reason, relation, poly)
             case "apart" if relation == ">" and len(reason.factors) == 1:
                 (factor,) = reason.factors
-                if factor.reason is None or not known_fact(self.known, poly, "≥"):
+                shown = factor.poly == plain(poly) and (factor.power, factor.sign) == (1, 1)
+                if factor.reason is None or not shown or not known_fact(self.known, poly, "≥"):
                     raise Rejected("it is not known that the number is not negative")
                 self._check(factor.reason, "≠", poly)
             case "sign" if reason.sign is not None:

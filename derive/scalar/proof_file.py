@@ -11,7 +11,7 @@ from derive.interpret.statement import Statement
 from derive.kernel import ANY, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import NEGATION, Sign, SignProduct
-from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, accept, leaves
+from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, accept, leaves, plain
 from derive.scalar.reasons import letters_of
 from derive.serialise import RATIONAL, SCHEMAS
 
@@ -126,7 +126,7 @@ def proof_from_json(data: Any, depth: int = 0) -> Proof:
     if "case" in item:
         _keys(item, "case", "above", "below")
         below = (proof_from_json(item[k], depth + 1) for k in ("above", "below"))
-        return Tree(_read_poly(item["case"]), *below)
+        return Tree(_written(item["case"]), *below)
     if "alternatives" in item:
         _keys(item, "alternatives", "proofs")
         proofs = tuple(proof_from_json(p, depth + 1) for p in _list(item["proofs"], DEPTH))
@@ -178,14 +178,14 @@ def _read_factor(data: Any, depth: int) -> Factor:
     power = _whole(item["power"])
     if not 1 <= power <= LENGTH:
         raise InputError(f"power: expected 1 to {LENGTH}, got {power}")
-    return Factor(_read_poly(item["factor"]), power, _whole(item["sign"]), reason)
+    return Factor(_written(item["factor"]), power, _whole(item["sign"]), reason)
 
 
 def _read_product(data: Any) -> SignProduct:
     item = _dict(data, 0)
     _keys(item, "coefficient", "facts", "squares")
     facts = tuple(_text(f) for f in _list(item["facts"], LENGTH))
-    squares = tuple(_read_poly(q) for q in _list(item["squares"], LENGTH))
+    squares = tuple(_written(q) for q in _list(item["squares"], LENGTH))
     return SignProduct(_number(item["coefficient"]), facts, squares)
 
 
@@ -200,6 +200,14 @@ def _read_poly(data: Any) -> Poly:
         number, names = _list(entry, 2, 2)
         terms[_product(names), ()] = _number(number)
     return Poly(terms, ANY, ANY)
+
+
+def _written(data: Any) -> Poly:
+    """Read a polynomial of which only a multiple matters, and which is written in one way."""
+    poly = _read_poly(data)
+    if plain(poly) != poly:
+        raise InputError("polynomial: expected whole coefficients without common factor, the first positive")
+    return poly
 
 
 def _product(data: Any) -> tuple[str, ...]:

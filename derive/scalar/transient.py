@@ -44,7 +44,7 @@ def riccati_transient() -> Formula:
 
 def riccati_recursion() -> Formula:
     """P_k for P_{k+1} = A^2 P_k R/(C^2 P_k + R) + Q, an explicit power."""
-    A, C, Q, R, b, T, lam, rho, start, k, P, power, sigma = symbols("A C Q R b T λ ρ P0 k P_k ρ^k σ")
+    A, C, Q, R, b, T, lam, rho, start, k, P, power = symbols("A C Q R b T λ ρ P0 k P_k ρ^k")
     product = 2 * Power(C, 2) * Q * R
     rises = Quotient(product, T + b), HALF * (T + b)
     falls = HALF * (T - b), Quotient(product, T - b)
@@ -65,7 +65,7 @@ def riccati_recursion() -> Formula:
             Let(rho, Quotient(Power(A, 2) * Power(R, 2), Power(lam, 2))),
         ),
         (
-            Branch((compare(k, "="),), start, "induction start"),
+            Branch((compare(k, "="),), start, "start of the closed form"),
             Branch((compare(start, "="), compare(Q, "=")), NOTHING, "zero stays zero in discrete time"),
             Branch((moving, large, slow), explicit(rises, near), "explicit recursion, b > 0"),
             Branch((moving, large), explicit(rises, far), "explicit recursion, b > 0"),
@@ -75,11 +75,11 @@ def riccati_recursion() -> Formula:
         ),
     )  # fmt: skip
     sequences = (
-        Sequence(near, power, "power at the start", "the power as a sum"),
-        Sequence(far, power, "power at the start", "the power as a sum"),
-        Sequence(k, sigma, "sum of no power", "counting"),
+        Sequence(near, power, "ρ^k at the start", "power'"),
+        Sequence(far, power, "ρ^k at the start", "power'"),
     )
-    roles = ("induction step", "P_k >= 0", "distance in discrete time", "bound of the error in discrete time")
+    meaning = "closed form", "recursion as a quotient", "P_k >= 0"
+    roles = (*meaning, "distance in discrete time", "bound of the error in discrete time")
     return Formula(
         "riccati_recursion", Equation(P, "=", explicit((HALF * (T - b), HALF * (T + b)), power)),
         "R > 0, Q >= 0, P0 >= 0, k = 0, 1, 2, ...", "explicit recursion", roles, program, scalar_lecture,
