@@ -6,14 +6,28 @@ it by ``adopt``, one proved statement at a time; files carry names only, never r
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from derive.functions import Limit, Power, is_scalar, value
+from derive.functions import Limit, Power, Start, is_scalar, value
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
-from derive.real import COMPLEX, FREQUENCY, RESERVED, TIME, UNIT, Family, Real, scalar, scalars_of
+from derive.real import (
+    COMPLEX,
+    FREQUENCY,
+    RESERVED,
+    STEPS,
+    TIME,
+    UNIT,
+    Family,
+    Progression,
+    Real,
+    constant,
+    scalar,
+    scalars_of,
+)
 from derive.roots import is_real
 from derive.rules import Context, Fact, Grid
 from derive.scalars import adopt_atom, adopt_scalar
@@ -24,6 +38,7 @@ from derive.terms import (
     Expect,
     Glyph,
     MissingInverse,
+    Number,
     Product,
     Reading,
     Sum,
@@ -54,6 +69,7 @@ class Declared:
     text: str = ""
     case: bool = False
     generic: str = ""  # the variable, if it holds for all but finitely many of its values
+    every: bool = False  # it holds for every number of steps: the start of a sequence, or a recursion
 
 
 @dataclass(frozen=True)
@@ -111,6 +127,7 @@ class Theory:
     arbitrary: set[str] = field(default_factory=set[str])
     running: set[str] = field(default_factory=set[str])
     families: dict[str, Family] = field(default_factory=dict[str, Family])
+    sequences: dict[str, tuple[Term, Symbol]] = field(default_factory=dict)  # x_0, x_{k+1}
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
     speaks_of: dict[str, frozenset[str]] = field(default_factory=dict)  # scalars in a declaration
 
@@ -211,6 +228,21 @@ class Theory:
         self.families[name] = Family(*parts, index.name, count.name)
         return root
 
+    def sequence(self, member: Symbol, start: Term, after: Symbol, text: str = "") -> None:
+        """Declare that a scalar is the member x_k of a sequence: x_0 is ``start``, and ``after`` stands for x_{k+1}.
+
+        The start is a number or a parameter; ``after`` is defined by x_k, or a letter of which a recursion speaks.
+        """
+        self.sequences[member.name] = start, after
+        name, statement = first_of(member.name), Equation(Start(member, self.symbols[STEPS]), ":=", start)
+        self.declared[name] = Declared(name, statement, "definition", text, every=True)
+
+    def recur(self, name: str, lhs: Term, rhs: Term, text: str = "") -> Equation:
+        """Declare an equation between the members x_k and x_{k+1} of sequences that holds for every k."""
+        statement = Equation(lhs, "=", rhs)
+        self.declared[name] = Declared(name, statement, "definition", text, every=True)
+        return statement
+
     def generic(self, name: str, x: Term, a: Term, variable: Symbol, text: str = "") -> Equation:
         """Declare x^2 + a^2 > 0, which fails for one value of the variable at most: x is the variable and a shift."""
         statement = Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero("", ""))
@@ -288,6 +320,7 @@ class Theory:
         self._check_scalars()
         real = Real(
             families=dict(self.families),
+            sequences=self._progressions(),
             arbitrary=frozenset(self.arbitrary),
             cases=self._cases(),
             pending=self._pending(),
@@ -324,15 +357,35 @@ class Theory:
     def _check_scalars(self) -> None:
         """Reject names of scalars that the rules for numbers would take for something else."""
         counts = {f.index: f.count for f in self.families.values()}
-        taken = {n for f in self.families.values() for n in (f.real, f.imaginary, f.index, f.count)} | set(
-            self.families
-        )
+        taken = _names(self.families)
         if self.running & (taken | RESERVED | self.arbitrary):
             raise Rejected("a running parameter is declared as something else as well")
         if self.arbitrary & (taken | RESERVED | self.nonnegative) or {COMPLEX, UNIT} & self.nonnegative:
             raise Rejected("an arbitrary parameter, s or j is declared as something else as well")
         if taken & RESERVED or any(counts[f.index] != f.count for f in self.families.values()):
             raise Rejected("roots are numbered by an index of their own, from 1 to one count")
+
+    def _progressions(self) -> dict[str, Progression]:
+        """Return the sequences, each of scalars of its own that nothing else has a meaning for."""
+        pending, atoms = self._pending(), {d.name for d in self.declared.values() if isinstance(d, DeclaredAtom)}
+        letters = [*self.sequences, *(after.name for _, after in self.sequences.values())]
+        taken = {*RESERVED, STEPS, *self.running, *self.arbitrary} | _names(self.families)
+        if self.sequences and STEPS in {*self.running, *self.arbitrary, *pending} | _names(self.families):
+            raise Rejected(f"{STEPS} is the number of steps, and stands for nothing else")
+        if len(set(letters)) < len(letters) or {*taken, *atoms, *self.nonnegative} & {*letters}:
+            raise Rejected("a member of a sequence is declared as something else as well")
+        if pending & self.sequences.keys():
+            raise Rejected("a member of a sequence is defined by its start and the one before, and by nothing else")
+        found = dict[str, Progression]()
+        for name, (start, after) in self.sequences.items():
+            match start:
+                case Number(value=number):
+                    found[name] = Progression(constant(number), after.name, first_of(name))
+                case Symbol(name=first, scalar=True) if first not in {*taken, *letters, *pending}:
+                    found[name] = Progression(scalar(first), after.name, first_of(name))
+                case _:
+                    raise Rejected(f"{name} starts neither at a number nor at a parameter")
+        return found
 
     def settle(self, reading: Reading, learnt: Equation | None = None) -> Reading:
         """Adopt every declaration whose reasons are available by now, in the order of declaration.
@@ -365,7 +418,7 @@ class Theory:
         return bool(used) and any(
             isinstance(d.statement.lhs, Symbol) and d.statement.lhs.name in used
             for d in self.declared.values()
-            if isinstance(d, Declared) and d.kind == "definition" and d is not item and d.name not in reading.adopted
+            if isinstance(d, Declared) and defines(d) and d is not item and d.name not in reading.adopted
         )
 
     def sizes(self) -> set[str]:
@@ -373,9 +426,24 @@ class Theory:
         return {size for s in self.symbols.values() for size in (s.rows, s.cols) if size}
 
 
+def _names(families: Mapping[str, Family]) -> set[str]:
+    """Return the scalars that stand for roots, their parts, indices and counts."""
+    return {n for f in families.values() for n in (f.real, f.imaginary, f.index, f.count)} | set(families)
+
+
+def first_of(member: str) -> str:
+    """Return the name of the definition of the first member of a sequence."""
+    return f"{member} at the start"
+
+
 def _waits(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> bool:
     """Tell whether the fact by which an atom exists is not there yet."""
     return isinstance(item, DeclaredAtom) and bool(item.because) and item.because not in reading.context.facts
+
+
+def defines(item: Declared) -> bool:
+    """Tell whether a declaration is a definition, and no recursion."""
+    return item.kind == "definition" and not item.every
 
 
 def terms_of(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom) -> tuple[Term, ...]:
@@ -411,10 +479,12 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
 def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> frozenset[str]:
     """Return the scalars that a hypothesis holds at some value, and that no limit or derivative may move.
 
-    x > 0 and x ≥ 0 are true of all values that a variable takes; so is an equation between functions of s.
+    x > 0 and x ≥ 0 are true of all values that a variable takes, but the number of steps is 0 as well; so is an
+    equation between functions of s. What is declared for every number of steps holds k nowhere.
     """
     if isinstance(item, (DeclaredInverse, DeclaredAtom)) or (isinstance(item, Declared) and item.generic):
         return frozenset()
+    real = reading.real
     nodes = [n for t in terms_of(item) for n in walk(t)]
     found = reading.real.reached(n.name for n in nodes if isinstance(n, Symbol))
     found -= {name for f in reading.real.families.values() for name in (f.index, f.count)}
@@ -423,7 +493,11 @@ def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, readi
     if any(isinstance(n, Symbol) and not n.scalar and n.name in reading.context.complex for n in nodes):
         found -= {COMPLEX}
     match item:
-        case Declared(statement=Equation(Symbol(name=name), ">" | "≥", Zero())) if name not in reading.real.atoms:
+        case Declared(every=True):
+            return frozenset(found - {STEPS})
+        case Declared(statement=Equation(Symbol(name=name), ">" | "≥", Zero())) if not (
+            name in real.atoms or (real.sequences and real.varies(name, STEPS))
+        ):
             return frozenset()
         case Declared(statement=Equation(Symbol(scalar=True), ":=", _)):
             return frozenset()
@@ -442,10 +516,12 @@ def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | Declared
     if isinstance(item, DeclaredAtom):
         return
     real, names = reading.real, {n.name for t in terms_of(item) for n in walk(t) if isinstance(n, Symbol)}
+    _check_recursion(item, names, reading)
     match item:
         case Declared(statement=Equation(Sum((Power(x, 2), Power(a, 2))), ">", Zero())) if item.generic:
             shift, width = value(x, reading) - scalar(item.generic), value(a, reading)
-            used, variables = scalars_of(shift) | scalars_of(width), (COMPLEX, FREQUENCY, TIME, *real.running)
+            used, steps = scalars_of(shift) | scalars_of(width), (STEPS,) if real.sequences else ()
+            variables = (COMPLEX, FREQUENCY, TIME, *steps, *real.running)
             moving = any(real.varies(s, v) for s in used for v in variables)
             if (
                 item.generic not in (COMPLEX, FREQUENCY, *real.running)
@@ -458,13 +534,30 @@ def _check_hypothesis(item: Declared | DeclaredInverse | DeclaredFact | Declared
         case Declared(statement=Equation(Symbol(name=r), ">", Zero())) if r in real.running and not item.generic:
             pass
         case Declared(statement=Equation(Symbol(scalar=True) as lhs, ":=", _)) if not item.generic:
-            parts = {p for f in real.families.values() for p in (f.real, f.imaginary, f.index, f.count)}
-            if lhs.name in RESERVED | real.arbitrary | real.running | parts or lhs.name in real.families:
+            if lhs.name in RESERVED | real.arbitrary | real.running | _names(real.families):
                 raise Rejected(f"{item.name}: {lhs.name} has a meaning already")
         case _ if getattr(item, "generic", "") or real.reached(names) & (real.arbitrary | real.running):
             raise Rejected(f"{item.name}: nothing may be assumed of an arbitrary or running parameter")
         case _:
             pass
+
+
+def _check_recursion(
+    item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, names: set[str], reading: Reading
+) -> None:
+    """Reject a next member that depends on what the rules vary, and what is said of every k but is no recursion."""
+    if not isinstance(item, Declared):
+        return
+    lhs, real, next_ = item.statement.lhs, reading.real, reading.real.following
+    defines = item.statement.relation == ":=" and isinstance(lhs, Symbol) and lhs.name in next_
+    starts = isinstance(lhs, Start) and item.statement.relation == ":="
+    if item.every and not starts and (item.statement.relation != "=" or not names & (next_ - real.pending)):
+        raise Rejected(f"{item.name}: it does not say how a sequence goes on")
+    varied = {COMPLEX, UNIT, FREQUENCY, *real.arbitrary, *real.running} | _names(real.families)
+    if (defines or item.every) and real.reached(names) & (varied | ({TIME} if item.every else set())):
+        raise Rejected(f"{item.name}: a sequence depends on nothing that the rules vary")
+    if defines and not is_real(value(item.statement.rhs, reading), reading):
+        raise Rejected(f"{item.name}: a sequence consists of real numbers")
 
 
 def adopt(reading: Reading, name: str, statement: Equation) -> Reading:
@@ -524,9 +617,11 @@ def adopt_inverse(reading: Reading, item: DeclaredInverse) -> Reading:
         f"{item.name}.right": poly * inverse - identity(poly.rows),
         f"{item.name}.left": inverse * poly - identity(poly.cols),
     }
+    because = (item.because,) if isinstance(item.because, str) else item.because
+    real = replace(reading.real, reasons={**reading.real.reasons, item.name: because})
     unreal = context.complex if context.is_real(poly) else context.complex | {item.name}
     context = replace(context, relations=relations, complex=unreal)
-    return replace(reading, context=context, inverses={**reading.inverses, poly: item.name})
+    return replace(reading, context=context, inverses={**reading.inverses, poly: item.name}, real=real)
 
 
 def _check_reason(item: DeclaredInverse, poly: Poly, reading: Reading) -> None:
@@ -575,6 +670,11 @@ def consulting(reading: Reading) -> tuple[Reading, Consulted, Consulted]:
 def names_of(name: str, relations: Mapping[str, Poly]) -> list[str]:
     """Return the relations that a declaration or lemma stands for: itself, its blocks, or both sides of an inverse."""
     return [r for r in relations if r == name or r.startswith((name + "[", name + "."))]
+
+
+def owner(name: str) -> str:
+    """Return the declaration or lemma that a relation stands for."""
+    return re.sub(r"(\[\d+,\d+\]|\.left|\.right)$", "", name)
 
 
 def _with_fact(reading: Reading, name: str, fact: Fact) -> Reading:

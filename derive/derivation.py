@@ -11,12 +11,13 @@ from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Literal
 
-from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt
+from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt, names_of, owner
 from derive.display import Displayed
 from derive.functions import Definite, Limit, Rate, Start, single_of
+from derive.induction import Induction, atoms_in, check_induction, starts_in
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
-from derive.real import COMPLEX, NEGATION, TIME, Sign
+from derive.real import COMPLEX, HYPOTHESIS, NEGATION, STEPS, TIME, Sign, scalars_of
 from derive.roots import check_positive, determinant_claim
 from derive.rules import (
     Comparison,
@@ -52,7 +53,7 @@ Rule = Literal[
     "identity", "apply", "trace", "gradient", "positivity", "comparison", "uniqueness", "chain",
     "scalar", "same rate", "sign", "both", "squeeze", "integral", "same argument",
     "instance", "sum over", "linear", "conjugate", "same roots", "modulus", "mirrored", "trace of roots", "determinant",
-    "exchange", "positive", "resolvent", "single", "parameter", "any sign", "logarithms",
+    "exchange", "positive", "resolvent", "single", "parameter", "any sign", "logarithms", "induction",
 ]  # fmt: skip
 Text = tuple["str | Term | Equation", ...]
 PARTS: Mapping[str, tuple[str, ...]] = {
@@ -60,15 +61,17 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     "comparison": ("comparison",),
     "uniqueness": ("uniqueness",),
     "chain": ("links",),
+    "induction": ("identities", "induction"),
     **dict.fromkeys((*RULES, "positive"), ("sign", "links")),
 }  # the parts of a proof that a rule replays, where they are not the identities
 FUNCTIONS = ("modulus", "mirrored", "same roots", "trace of roots")  # rules with links that hold for every s
+SUPPOSED = frozenset({NEGATION, HYPOTHESIS})  # what a certificate supposes, and no step or declaration is called
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
 
 @dataclass(frozen=True)
 class Proof:
-    """What the kernel replays: identities in the order of the blocks, or a positivity or comparison certificate."""
+    """What the kernel replays: identities in the order of the blocks, or a certificate of another kind."""
 
     identities: tuple[Certificate, ...] = ()
     positivity: Positivity | None = None
@@ -76,6 +79,7 @@ class Proof:
     uniqueness: Uniqueness | None = None
     links: tuple[str, ...] = ()
     sign: Sign | None = None
+    induction: Induction | None = None
 
     def relations(self) -> set[str]:
         """Return the names of the relations and facts that the proof uses."""
@@ -90,10 +94,10 @@ class Proof:
             names |= {self.comparison.stable, self.comparison.forcing}
         if self.uniqueness:
             addends += self.uniqueness.rate_terms + self.uniqueness.initial_terms
-        if self.sign:
-            addends += self.sign.terms
-            names |= {fact for product in self.sign.products for fact in product.facts}
-        return (names | {t.relation for t in addends}) - {NEGATION}
+        for sign in (self.sign, *((self.induction.start, self.induction.step) if self.induction else ())):
+            addends += sign.terms if sign else ()
+            names |= {fact for product in sign.products for fact in product.facts} if sign else set()
+        return (names | {t.relation for t in addends}) - SUPPOSED
 
 
 @dataclass(frozen=True)
@@ -188,6 +192,8 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
         raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
     if step.rule == "chain":
         _check_chain(step, earlier)
+    elif step.rule == "induction":
+        check_induction(step.statement, proof.identities, proof.induction, reading)
     elif step.rule == "positive":
         check_positive(step.statement, proof.links, reading)
     elif step.rule in RULES:
@@ -224,7 +230,7 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
 
 
 def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> None:
-    """Reject a limit, derivative or integral in a variable that a hypothesis holds at some value.
+    """Reject a limit, derivative, integral or induction in a variable that a hypothesis holds at some value.
 
     The same for s where a function of s is read elsewhere, or a link is an identity between functions of s.
     """
@@ -232,20 +238,36 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
     moving = {n.symbol.name for n in nodes if isinstance(n, (Limit, Rate, Start, Definite))}
     moving |= {TIME} if step.rule == "same rate" else set()
     moving |= {COMPLEX} if step.rule in FUNCTIONS or any(isinstance(n, At) for n in nodes) else set()
-    for name in _below({*step.uses, *step.proof.relations()}, reading, earlier) if moving else ():
+    names = {*step.uses, *step.proof.relations()}
+    if step.rule == "induction":
+        moving, names = {STEPS}, names | atoms_in(step.statement, reading)
+        if unnamed := starts_in(step.statement, reading) - {*step.uses}:
+            raise Rejected(f"it rests on {', '.join(sorted(unnamed))} without naming it")
+    for name in _behind(names, reading, earlier) if moving else ():
         if moving & reading.real.fixed.get(name, frozenset()):
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
 
 
 def _below(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
     """Return the names, and all that they rest on: through steps, and the reasons of atoms."""
-    seen, waiting = set[str](), set(names)
+    seen, waiting = set[str](), set(map(owner, names))
     while waiting:
         seen.add(name := waiting.pop())
         if name in earlier:
-            waiting |= {*earlier[name].uses, *earlier[name].proof.relations()} - seen
+            waiting |= set(map(owner, (*earlier[name].uses, *earlier[name].proof.relations()))) - seen
         elif name in reading.real.reasons:
-            waiting |= {reading.real.reasons[name]} - seen
+            waiting |= set(reading.real.reasons[name]) - seen
+    return seen
+
+
+def _behind(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
+    """Return the names, all that they rest on, and the functions of which relations and facts among them speak."""
+    context, real, seen = reading.context, reading.real, set[str]()
+    while names != seen:
+        seen = _below(names, reading, earlier)
+        polys = [context.relations[r] for name in seen for r in names_of(name, context.relations)]
+        polys += [p for name in seen & context.facts.keys() for row in context.facts[name].matrix for p in row]
+        names = seen | (real.reached({s for poly in polys for s in scalars_of(poly)}) & real.atoms.keys())
     return seen
 
 
@@ -280,7 +302,7 @@ class Outcome:
 def verify(theory: Theory, steps: Sequence[Step]) -> list[Outcome]:
     """Replay steps in order from the installed theory; a rejected step serves no later one."""
     reading, earlier, outcomes = theory.reading(), dict[str, Step](), list[Outcome]()
-    taken = set(theory.declared)
+    taken = {*theory.declared, *SUPPOSED}
     for step in steps:
         try:
             if step.name in taken:

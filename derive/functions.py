@@ -22,6 +22,7 @@ from derive.real import (
     ORIGIN,
     ROUND,
     SIGNS,
+    STEPS,
     TIME,
     UNIT,
     ZERO,
@@ -234,8 +235,9 @@ def value(term: Term, reading: Reading) -> Poly:
             return scalar(_atom(term, value(body, reading), real))
         case Rate(body, symbol):
             return derivative(value(body, reading), variable(symbol, reading), real)
-        case Start(body, symbol):
-            return at_origin(value(body, reading), variable(symbol, reading), real)
+        case Start(body, Symbol(name=name) as symbol):
+            steps = name == STEPS and real.sequences
+            return at_origin(value(body, reading), name if steps else variable(symbol, reading), real)
         case Limit(body, symbol, point):
             return limit(value(body, reading), variable(symbol, reading), point_of(point), real, reading.context)
         case Definite():
@@ -263,6 +265,8 @@ def variable(symbol: Symbol, reading: Reading) -> str:
     parts = {p for f in real.families.values() for p in (f.real, f.imaginary, f.count)}
     if not symbol.scalar or name in real.atoms or name in (CIRCLE, UNIT) or name in parts:
         raise Rejected(f"{name} is no variable")
+    if real.sequences and (name == STEPS or real.sequence(name)):
+        raise Rejected(f"{name}: the number of steps and the members of a sequence do not vary continuously")
     return name
 
 

@@ -8,7 +8,7 @@ rules search nothing, and use the standard library only.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 
@@ -18,9 +18,11 @@ from derive.rules import Context, Fact
 
 SIGNS = {"≥": "nonnegative", ">": "positive", "≠": "nonzero"}
 NEGATION = "¬"  # the fact (for ≠: the relation) that the claim is false
+HYPOTHESIS = "claim at k"  # what a step of an induction may use, the claim that it is about
 ORIGIN, INFINITY = "0", "∞"
 FREQUENCY = "ω"  # the variable of improper integrals
 TIME = "t"  # the variable of integrals from 0
+STEPS = "k"  # the number of steps, 0, 1, 2, ..., in a theory with sequences
 COMPLEX, UNIT = "s", "j"  # a generic complex number, and the imaginary unit
 AXIS = (UNIT, FREQUENCY)  # the factors of a point on the imaginary axis
 ROUND = " ".join(AXIS)  # what a function at the point (1 + jω)/(1 - jω) of the unit circle is taken over
@@ -61,6 +63,18 @@ class Family:
 
 
 @dataclass(frozen=True)
+class Progression:
+    """A sequence, x_k for each number of steps k: its first member x_0, and the scalar that stands for x_{k+1}.
+
+    ``name`` is that of the definition of the first member.
+    """
+
+    start: Poly
+    after: str
+    name: str
+
+
+@dataclass(frozen=True)
 class Real:
     """What is known of scalars: atoms by name, and proved limits."""
 
@@ -68,11 +82,12 @@ class Real:
     limits: Mapping[tuple[str, str, Scalars], Poly] = field(default_factory=dict[tuple[str, str, Scalars], Poly])
     sums: tuple[tuple[str, str, Poly, Poly], ...] = ()  # proved limits of sums: variable, point, sum, limit
     families: Mapping[str, Family] = field(default_factory=dict[str, Family])
+    sequences: Mapping[str, Progression] = field(default_factory=dict[str, Progression])
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made
     fixed: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # by a hypothesis, its name
     letters: Mapping[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])  # what defines matrices
     cases: frozenset[str] = frozenset()  # hypotheses that only the steps make which name them
-    reasons: Mapping[str, str] = field(default_factory=dict[str, str])  # why atoms exist
+    reasons: Mapping[str, tuple[str, ...]] = field(default_factory=dict[str, tuple[str, ...]])  # why they exist
     pending: frozenset[str] = frozenset()  # scalars that stand for others, once their declarations are taken up
     generic: frozenset[str] = frozenset()  # variables of which finitely many values are excepted by some facts
     running: frozenset[str] = frozenset()  # parameters of which nothing but r > 0 is assumed, for all r or almost all
@@ -107,6 +122,8 @@ class Real:
         """Tell whether a scalar depends on a variable."""
         if name == variable or (variable and self.indexed(name) == variable):
             return True
+        if self.sequence(name):
+            return variable == STEPS or not self.determined(name) or variable in self.reached({name})
         atom = self.atoms.get(name)
         if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False
@@ -124,8 +141,21 @@ class Real:
         below = scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
         return any(self.varies(s, variable) for s in below)
 
+    def sequence(self, name: str) -> bool:
+        """Tell whether a scalar is the member x_k of a sequence, or stands for x_{k+1} without being defined by it."""
+        return name in self.sequences or (name in self.following and name not in self.atoms)
+
+    @property
+    def following(self) -> frozenset[str]:
+        """The scalars that stand for the next members of sequences."""
+        return frozenset(s.after for s in self.sequences.values())
+
+    def determined(self, name: str) -> bool:
+        """Tell whether the next member of a sequence is defined by this one; else it may depend on anything."""
+        return name in self.sequences and self.sequences[name].after in self.atoms
+
     def reached(self, names: Iterable[str]) -> set[str]:
-        """Return the scalars, and all that the atoms among them are made of."""
+        """Return the scalars, and all that the atoms and sequences among them are made of."""
         found, waiting = set[str](), set(names)
         while waiting:
             found.add(name := waiting.pop())
@@ -134,6 +164,10 @@ class Real:
                 waiting |= scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
             if family is not None:
                 waiting |= {family.real, family.imaginary}
+            if self.sequence(name):
+                waiting.add(STEPS)
+            if name in self.sequences:
+                waiting |= scalars_of(self.sequences[name].start) | {self.sequences[name].after}
             waiting -= found
         return found
 
@@ -330,10 +364,11 @@ def _moves(poly: Poly, variable: str, real: Real) -> bool:
 
 def at_origin(poly: Poly, variable: str, real: Real) -> Poly:
     """Return the value where the variable is 0."""
-    return _substitute(poly, variable, real, lambda name: _atom_at_origin(name, variable, real))
+    return substituted(poly, variable, real, lambda name: _atom_at_origin(name, variable, real))
 
 
-def _substitute(poly: Poly, variable: str, real: Real, image) -> Poly:
+def substituted(poly: Poly, variable: str, real: Real, image: Callable[[str], Poly]) -> Poly:
+    """Replace every scalar that depends on a variable by its image."""
     total = ZERO
     for (m, _), c in poly.terms.items():
         product = constant(c)
@@ -346,6 +381,8 @@ def _substitute(poly: Poly, variable: str, real: Real, image) -> Poly:
 def _atom_at_origin(name: str, variable: str, real: Real) -> Poly:
     if name == variable:
         return ZERO
+    if variable == STEPS and name in real.sequences:
+        return real.sequences[name].start
     atom = real.atoms.get(name)
     if atom is None:
         raise Rejected(f"the value of {name} at 0 is not known")
@@ -393,7 +430,7 @@ def reflect(poly: Poly, variable: str, real: Real) -> Poly:
             raise Rejected(f"{name} is not even in {variable}")
         return scalar(found)
 
-    return _substitute(poly, variable, real, image)
+    return substituted(poly, variable, real, image)
 
 
 def limit(poly: Poly, variable: str, point: str, real: Real, context: Context) -> Poly:

@@ -112,7 +112,7 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
         raise MissingInverse(f"the logarithm in {name} is not declared yet")
     if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
         facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
-    reasons = {**reading.real.reasons, **({name: because} if because else {})}
+    reasons = {**reading.real.reasons, **({name: (because,)} if because else {})}
     real = replace(reading.real, atoms={**reading.real.atoms, name: atom}, reasons=reasons)
     facts |= log_facts(name, real) if kind == "log" else {}
     relations = {**context.relations, **({name: relation} if relation is not None else {})}
@@ -146,9 +146,7 @@ def check_scalar(
     if rule == "sign":
         if sign is None:
             raise Rejected("the proof is of another kind than the rule")
-        claim = value(statement.lhs, reading) - value(statement.rhs, reading)
-        _check_real(sign, claim, statement.relation, reading)
-        replay_sign(sign, claim, statement.relation, reading.context)
+        check_sign(sign, value(statement.lhs, reading) - value(statement.rhs, reading), statement.relation, reading)
         return
     if statement.relation != "=" and rule not in ("instance", "sum over"):
         raise Rejected(f"the rule {rule!r} proves equations, not {statement.relation}")
@@ -157,6 +155,12 @@ def check_scalar(
         **CHECKS, **PARAMETER,
     }  # fmt: skip
     checks[rule](statement, links, reading)
+
+
+def check_sign(sign: Sign, claim: Poly, relation: str, reading: Reading) -> None:
+    """Replay a certificate of sign about real numbers, or raise Rejected."""
+    _check_real(sign, claim, relation, reading)
+    replay_sign(sign, claim, relation, reading.context)
 
 
 def _s_is_real(reading: Reading) -> bool:

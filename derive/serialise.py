@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from derive import derivation, functions, kernel, real, rules, spectral, terms
+from derive import derivation, functions, induction, kernel, real, rules, spectral, terms
 from derive.context import Theory
 from derive.derivation import Proof, Step
 from derive.errors import InputError
@@ -38,6 +38,7 @@ SCHEMAS: Mapping[str, str] = {
     "uniqueness": "derive-uniqueness/1",
     "links": "derive-chain/1",
     "sign": "derive-sign/1",
+    "induction": "derive-induction/1",
 }
 RATIONAL = re.compile(r"-?[0-9]{1,400}(/[1-9][0-9]{0,399})?")
 T = TypeVar("T")
@@ -225,7 +226,7 @@ class Reader:
 @cache
 def hints(cls: type) -> dict[str, Any]:
     """Return the resolved types of a dataclass's fields."""
-    modules = terms, functions, spectral, real, rules, derivation, kernel
+    modules = terms, functions, spectral, real, rules, induction, derivation, kernel
     names = {name: item for module in modules for name, item in vars(module).items()}
     return get_type_hints(cls, {**names, **vars(next(m for m in modules if m.__name__ == cls.__module__))})
 

@@ -110,7 +110,8 @@ def check_work(proof: Proof) -> None:
         work += len(matrix.terms) * _work([matrix], [claim])
     if proof.uniqueness:
         work += _work([proof.uniqueness.left, proof.uniqueness.right], [proof.uniqueness.claim])
-    if proof.sign and sum(len(p.facts) + 2 * len(p.squares) for p in proof.sign.products) > FACTORS:
+    signs = [s for s in (proof.sign, *((proof.induction.start, proof.induction.step) if proof.induction else ())) if s]
+    if sum(len(p.facts) + 2 * len(p.squares) for sign in signs for p in sign.products) > FACTORS:
         raise InputError(f"expected a certificate of sign of at most {FACTORS} factors, got more")
     if work > WORK:
         raise InputError(f"expected a certificate of at most {WORK} letters, got more; prove it in smaller steps")

@@ -77,6 +77,7 @@ RULES: dict[Rule, str] = {
     "parameter": "derivative under the integral",
     "any sign": "for every real number",
     "logarithms": "logarithm of a product",
+    "induction": "induction",
 }
 ANCHORS = {" ": "-", "≠": "ne", "=": "eq", ">": "gt", "<": "lt", "≥": "ge", "≤": "le", "(": "_", ")": "_", ",": "_"}
 SOURCES = {number: title for number, (_, title) in DOCUMENTS.items()}

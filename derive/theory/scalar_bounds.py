@@ -14,7 +14,7 @@ from derive.terms import Equation, Glyph, Term
 from derive.theory.scalar_builder import ScalarBuilder
 from derive.theory.scalar_continuous import ONE, ZERO, square
 from derive.theory.scalar_discrete import RECIPROCAL
-from derive.theory.scalar_recursion import HYPOTHESIS, halves
+from derive.theory.scalar_recursion import halves
 
 FLOOR, FLOOR_D = "not (C W = 0, A > 0, P0 = 0)", "not (C Q = 0, A^2 > 1, P0 = 0)"
 LATER, LATER_D = "t >= ln(1 + c/η)/(2S)", "k >= ln(1 + c/η)/(-ln ρ)"
@@ -68,16 +68,13 @@ def declare(t: Theory) -> None:
 
 
 def _declare_powers(t: Theory) -> None:
-    rho, power, after, k = (t.symbols[x] for x in ("ρ", "ρ^k", "ρ^k+1", "k"))
+    rho, power, after = (t.symbols[x] for x in ("ρ", "ρ^k", "ρ^k+1"))
     t.assume(FLOOR_D, floor_d(t), ">", case=True,
              text="the state is stable, or excited and seen, or the start is uncertain and seen")  # fmt: skip
     t.atom("reciprocal", floor_d(t), FLOOR_D, "1/floor_d")
     t.assume("ρ > 0", rho, ">", text="the state remembers", case=True)
-    t.assume("ρ^k > 0", power, ">", text=HYPOTHESIS, case=True)
     for name, x, why in (("ρ", rho, "ρ > 0"), ("ρ^k", power, "ρ^k > 0"), ("ρ^(k+1)", after, "ρ^(k+1) > 0")):
         t.atom("log", x, why, f"ln {name}")
-    t.assume("k = 0", k, "=", text="the start", case=True)
-    t.assume("ln ρ^k = k ln ρ", Log(power), "=", k * Log(rho), HYPOTHESIS, case=True)
 
 
 def _declare_approach(t: Theory, a: Approach, later: str) -> None:
@@ -173,12 +170,13 @@ def _derive_discrete(b: ScalarBuilder) -> None:
     b.heading("How many steps it takes")
     b.say("Each step multiplies the distance to the steady state by ", t.symbols["ρ"], ", but for the denominator:")
     b.state(
-        "distance in discrete time", Equation(P - M, "=", Quotient((P0 - M) * lam * power, d)), "common denominator"
-    )
+        "distance in discrete time", Equation(P - M, "=", Quotient((P0 - M) * lam * power, d)), "common denominator",
+        ["closed form", "the power as a sum"],
+    )  # fmt: skip
     b.given(FLOOR_D)
     b.sign("1/floor > 0 in discrete time", Equation(Quotient(ONE, floor), ">", ZERO), RECIPROCAL, [FLOOR_D])
     b.state("denominator by the floor", Equation(d, "=", lam * power + floor * sigma), "insert the lower half",
-            ["lower half", "d", "power"])  # fmt: skip
+            ["lower half", "d", "the power as a sum"])  # fmt: skip
     b.sign("slack in discrete time", Equation(a.factor * d, "≥", lam), "multiply out; T σ is λ (1 - ρ^k)",
            ["1/floor > 0 in discrete time", FLOOR_D, "σ >= 0", "T > 0", "ρ^k >= 0", "λ > 0"], degree=4,
            identities=["denominator by the floor", "sum of the powers", "1/floor_d"], alone=True)  # fmt: skip
@@ -191,22 +189,13 @@ def _derive_discrete(b: ScalarBuilder) -> None:
 def _derive_powers(b: ScalarBuilder) -> None:
     s = b.theory.symbols
     rho, power, after, k = (s[x] for x in ("ρ", "ρ^k", "ρ^k+1", "k"))
-    b.say(
-        "A state that remembers has a power that is positive, with the logarithm ", k * Log(rho), ": that is so at the"
-    )
-    b.say("start, and if it is so for ", k, ", then for ", k + ONE, ".")
-    b.given("ρ > 0", "ρ^k > 0", "ln ρ^k = k ln ρ")
-    b.sign(
-        "power at the start > 0", Equation(power, ">", ZERO), "one", [], identities=["power at the start"], alone=True
-    )
-    b.sign("ρ^(k+1) > 0", Equation(after, ">", ZERO), "a product", ["ρ > 0", "ρ^k > 0"],
-           identities=["the power as a sum"], alone=True)  # fmt: skip
-    b.linked("ln ρ^0", Equation(Log(power), "=", Log(ONE)), "same argument", "the empty sum", ["power at the start"])
-    b.state("logarithm of the power at the start", Equation(Log(power), "=", k * Log(rho)), "both are zero",
-            ["ln ρ^0", "logarithm of one", "k = 0"])  # fmt: skip
-    b.state("next power over this one", Equation(Quotient(after, power), "=", rho), "cancel",
-            ["the power as a sum", "1/decay_d"])  # fmt: skip
+    b.say("A state that remembers has a power that is positive, with the logarithm ", k * Log(rho), ", by induction:")
+    b.given("ρ > 0")
+    b.induct("ρ^k > 0", Equation(power, ">", ZERO), "one at the start; then a product", ["ρ > 0"])
+    b.sign("ρ^(k+1) > 0", Equation(after, ">", ZERO), "a product", ["ρ > 0", "ρ^k > 0"], identities=["power'"],
+           alone=True)  # fmt: skip
+    b.state("next power over this one", Equation(Quotient(after, power), "=", rho), "cancel", ["power'", "1/decay_d"])
     b.linked("logarithm of a step", Equation(Log(Quotient(after, power)), "=", Log(rho)), "same argument", "the same",
              ["next power over this one"])  # fmt: skip
-    b.state("logarithm of the next power", Equation(Log(after), "=", (k + ONE) * Log(rho)), "add ln ρ",
-            ["logarithm of a step", "ln ρ^k = k ln ρ"])  # fmt: skip
+    b.induct("ln ρ^k = k ln ρ", Equation(Log(power), "=", k * Log(rho)), "both are zero at the start; then add ln ρ",
+             ["logarithm of one", "logarithm of a step"])  # fmt: skip

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from derive.context import Declared, DeclaredAtom, names_of
 from derive.derivation import Derived, Proof, Rule, Step, Text
 from derive.functions import Definite, Limit, Rate, Start, value
-from derive.kernel import Poly, Rejected
+from derive.induction import Claim, Induction, claim_of, starts_in
+from derive.kernel import Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
-from derive.real import scalars_of
+from derive.real import HYPOTHESIS, Sign, scalars_of
 from derive.scalar.search import closure, prove_identity, prove_sign
-from derive.terms import Equation, Reading, Term
-from derive.theory.builder import Builder, NotDerived
+from derive.terms import Equation, Reading, Term, Zero
+from derive.theory.builder import Builder, NotDerived, _used
+
+T = TypeVar("T")
 
 
 def _text(reason: str | Text) -> Text:
@@ -70,12 +74,30 @@ class ScalarBuilder(Builder):
         show: bool = True,
     ) -> Step:
         """Prove lhs >=, > or ≠ rhs: were it false, products of nonnegative numbers would add up to less than zero."""
-        context, real = self.reading.context, self.reading.real
+        claim = self._claim(name, statement)
+        found = self._sign(name, claim, statement.relation, using, identities, squares, degree, alone)
+        return self._keep(name, statement, "sign", reason, Proof(sign=found), number, source, show)
+
+    def _claim(self, name: str, statement: Equation) -> Poly:
         try:
-            claim = value(statement.lhs, self.reading) - value(statement.rhs, self.reading)
-            extra = [value(term, self.reading) for term in squares]
+            return value(statement.lhs, self.reading) - value(statement.rhs, self.reading)
         except Rejected as error:
             raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
+
+    def _sign(
+        self,
+        name: str,
+        claim: Poly,
+        relation: str,
+        using: Sequence[str],
+        identities: Sequence[str],
+        squares: Sequence[Term],
+        degree: int,
+        alone: bool,
+    ) -> Sign:
+        """Find a certificate of sign."""
+        context, real = self.reading.context, self.reading.real
+        extra = [self._claim(name, Equation(term, "=", Zero("", ""))) for term in squares]
         missing = [f for f in using if f not in context.facts]
         if missing:
             raise NotDerived(f"{self.key}: step {name!r}: no fact {', '.join(missing)}")
@@ -85,10 +107,50 @@ class ScalarBuilder(Builder):
         allowed = named if alone else {**named, **closure(polys, real, context.relations)}
         known = {s for p in (*polys, *allowed.values()) for s in scalars_of(p)}
         order = [s for s in self.order() if s in known]
-        found = prove_sign(claim, statement.relation, facts, allowed, order, extra, degree)
+        found = prove_sign(claim, relation, facts, allowed, order, extra, degree)
         if found is None:
             raise NotDerived(f"{self.key}: no certificate of sign for {name} from {', '.join(using) or 'nothing'}")
-        return self._keep(name, statement, "sign", reason, Proof(sign=found), number, source, show)
+        return found
+
+    def induct(
+        self,
+        name: str,
+        statement: Equation,
+        reason: str | Text,
+        using: Sequence[str] = (),
+        *,
+        identities: Sequence[str] = (),
+        squares: Sequence[Term] = (),
+        degree: int = 3,
+    ) -> Step:
+        """Prove a statement for every number of steps: at the start, and one step later from the claim itself."""
+        try:
+            claim = claim_of(statement, self.reading)
+        except Rejected as error:
+            raise NotDerived(f"{self.key}: step {name!r}: {error}") from error
+        relation = statement.relation
+
+        def identity(poly: Poly, more: Sequence[str]) -> Certificate:
+            return Certificate(poly, self.prove(poly, [*using, *more], label=name))
+
+        def sign(poly: Poly, more: Sequence[str]) -> Sign:
+            return self._sign(name, poly, relation, [*using, *more], identities, squares, degree, False)
+
+        if relation == "=":
+            proof = Proof(self._at_both(claim, identity))
+        else:
+            proof = Proof(induction=Induction(*self._at_both(claim, sign)))
+        uses = (*_used(proof), *sorted(starts_in(statement, self.reading)))
+        return self._display(Step(name, statement, "induction", _text(reason), proof, uses, lemma=True))
+
+    def _at_both(self, claim: Claim, find: Callable[[Poly, Sequence[str]], T]) -> tuple[T, T]:
+        """Find the certificates at the start, and one step later from the claim."""
+        start, known = find(claim.start, ()), self.reading
+        self.reading = claim.supposed(known)
+        try:
+            return start, find(claim.later, (HYPOTHESIS,))
+        finally:
+            self.reading = known
 
     def linked(
         self,
@@ -176,8 +238,6 @@ class ScalarBuilder(Builder):
         source: str,
         show: bool,
     ) -> Step:
-        from derive.theory.builder import _used
-
         step = self.record(Step(name, statement, rule, _text(reason), proof, _used(proof), number, source, True))
         if show:
             self.items.append(Derived((step,)))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Theory, declare, terms_of
+from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Theory, declare, defines, terms_of
 from derive.functions import KINDS, Log, Quotient
 from derive.terms import Equation, MissingInverse, Reading, Symbol, Term, walk
 
@@ -59,7 +59,7 @@ class ScalarTheory(Theory):
         definitions = {
             d.statement.lhs.name: name
             for name, d in self.declared.items()
-            if isinstance(d, Declared) and d.kind == "definition" and isinstance(d.statement.lhs, Symbol)
+            if isinstance(d, Declared) and defines(d) and isinstance(d.statement.lhs, Symbol)
         }
         atoms: dict[tuple[str, Term], set[str]] = {}
         for name, item in self.declared.items():

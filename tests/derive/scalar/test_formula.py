@@ -228,18 +228,18 @@ def test_wrong_programs_are_rejected(program):
 
 def test_wrong_powers_are_rejected():
     made = formula("riccati_recursion")
-    near, far, count = made.sequences
+    near, far = made.sequences
     lam, rho = made.program.lets[2].symbol, made.program.lets[3].symbol
-    k = count.expression
+    k = made.program.arguments[-1]
     for wrong in (
         replace(far, expression=Exp(k * Log(lam))),  # the power of another number
         replace(far, expression=Exp(rho * Log(k))), replace(far, expression=Exp(k * Log(rho) + rho)),
-        replace(far, start="sum of no power"), replace(count, following="the power as a sum"),
+        replace(far, expression=k), replace(far, start="σ at the start"), replace(far, following="σ'"),
     ):  # fmt: skip
         with pytest.raises(InputError):
             replace(made, sequences=(near, wrong)).check()
     with pytest.raises(InputError, match="a branch is not"):
-        replace(made, sequences=(near, far)).check()
+        replace(made, sequences=(near,)).check()
 
 
 def test_formula_says_what_it_rests_on():

@@ -46,11 +46,12 @@ class Outside(Exception):  # noqa: N818
 
 
 class Point:
-    """Random numbers for the parameters; atoms by their functions, and cases imposed."""
+    """Random numbers for the parameters; atoms by their functions, sequences by their steps, and cases imposed."""
 
-    def __init__(self, seed: int, real, cases):
+    def __init__(self, seed: int, reading, cases):
         rng = random.Random(seed)
-        self.real, self.rng, self.known = real, rng, {"π": math.pi}
+        self.real, self.rng, self.known = reading.real, rng, {"π": math.pi}
+        self.recursions = {"P_k'": reading.context.relations["recursion"]}
         for name in cases:
             if name.endswith("= 0") and name[0] in "ACWQ" and len(name) == 5:
                 self.known[name[0]] = 0.0
@@ -60,8 +61,6 @@ class Point:
             self.known["P0"] = 0.0
         if "S = 0" in cases:
             self.known |= {"A": 0.0, "W": 0.0}
-        if "σ = 0" in cases:
-            self.known["σ"] = 0.0
         if "A < 0" in cases:
             self.known["A"] = -rng.random() - 0.1
         self.assigned = assigned(cases)
@@ -82,18 +81,21 @@ class Point:
             known["A"] = self.rng.choice((1.0, -1.0)) + draw("S_d") * draw("C") / draw("R")
         if "W = ε^2" in cases:
             known |= {"W": draw("ε") ** 2, "V": 1.0}
-        if "k = 0" in cases:
-            known["k"] = 0.0
-        elif "ln ρ^k = k ln ρ" in cases:
-            known["k"] = draw("ln ρ^k") / draw("ln ρ")
+        known["k"] = self.rng.choice((0, 1, 2, 3, 5, 8))
 
     def scalar(self, name: str) -> float:
         if name not in self.known:
             atom = self.real.atoms.get(name)
             if name in self.assigned:
                 self.known[name] = self.assigned[name](self.scalar)
+            elif name in self.real.sequences:
+                self.known[name] = self.member(name, self.scalar("k"))
+            elif name in self.real.following and atom is None:
+                self.draw_parameters()
+                (member,) = (m for m, s in self.real.sequences.items() if s.after == name)
+                self.known[name] = self.next(member)
             elif atom is None:
-                positive = name in ("V", "R", "W", "Q", "P0", "P1", "t", "ω", "σ") or name in POSITIVE
+                positive = name in ("V", "R", "W", "Q", "P0", "P1", "t", "ω") or name in POSITIVE
                 self.known[name] = self.rng.uniform(0.1, 2) if positive else self.rng.uniform(-2, 2)
             elif atom.kind in ("integral", "improper"):
                 self.known[name] = self.integral(atom)
@@ -103,6 +105,37 @@ class Point:
                     raise Outside(name)
                 self.known[name] = ATOMS[atom.kind](x)
         return self.known[name]
+
+    def member(self, name: str, steps: int) -> float:
+        """Go from the start step by step."""
+        names = {n for n in self.real.reached({name}) if n in self.real.sequences}
+        self.draw_parameters()
+        fixed = {n: v for n, v in self.known.items() if not self.real.varies(n, "k")}
+        current, known = {n: self.value(self.real.sequences[n].start) for n in names}, self.known
+        for k in range(steps):
+            self.known = {**fixed, **current, "k": k}
+            current = {n: self.next(n) for n in names}
+        self.known = known
+        return current[name]
+
+    def draw_parameters(self) -> None:
+        """Draw once what the sequences depend on, not anew at every step."""
+        used = {s for p in self.recursions.values() for s in scalars_of(p)} | {"P0", "ρ"}
+        for name in sorted(self.real.reached(used)):
+            if not self.real.varies(name, "k"):
+                self.scalar(name)
+
+    def next(self, member: str) -> float:
+        """Return the next member: by its definition, or from the recursion, which is linear in it."""
+        after = self.real.sequences[member].after
+        if after in self.real.atoms:
+            return self.value(self.real.atoms[after].of)
+        known, ends = self.known, list[float]()
+        for guess in (0.0, 1.0):
+            self.known = {**known, after: guess}
+            ends.append(self.value(self.recursions[after]))
+        self.known = known
+        return ends[0] / (ends[0] - ends[1])
 
     def integral(self, atom) -> float:
         """Integrate by Gauss and Legendre; an axis from 0 to infinity through ω = tan θ."""
@@ -143,7 +176,7 @@ def test_statements_hold_at_random_numbers(walked):
             cases = {c for c in rests if getattr(item.theory.declared.get(c), "kind", "") == "hypothesis"}
             poly = value(step.statement.lhs, reading) - value(step.statement.rhs, reading)
             try:
-                point = Point(seed, reading.real, cases)
+                point = Point(seed, reading, cases)
                 if not holds(item, cases, point, reading):
                     continue
                 found, size = point.value(poly), point.scale(poly)
@@ -255,7 +288,7 @@ def test_the_hypotheses_of_each_step_can_hold_together(walked):
     item, reading = lecture("scalar"), walked[1]
     always = [
         n for n, d in item.theory.declared.items() if isinstance(d, Declared) and d.kind == "hypothesis" and not d.case
-    ]
+    ] + ["recursion"]
     sets = {frozenset(c for c in item.rests_on(n) if isinstance(d := item.theory.declared.get(c), Declared) and d.case)
             for n in walked[0]}  # fmt: skip
     for cases in sets:

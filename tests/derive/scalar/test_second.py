@@ -141,7 +141,7 @@ def test_unknown_formula():
 # ------------------------------------------------------------------------------------------------ any plant
 def at_point(reading, known: dict[str, float]):
     """Return the value of each letter of the lecture, with parameters given."""
-    point = Point(0, reading.real, ())
+    point = Point(0, reading, ())
     point.known |= known
     return point.scalar
 
