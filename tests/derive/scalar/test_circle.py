@@ -350,6 +350,19 @@ def test_mirrored_needs_real_matrices_of_one_size(x: World, reading: Reading):
     rejects(check_mirrored, equal(x.log(x.f), wrong), [other], reading, "sizes")
 
 
+def test_mirrored_needs_real_numbers_in_its_matrices(x: World):
+    """1/(1 + j) is a number without s, and not real; a letter for it is not among those that may be complex."""
+    t = World().t
+    t.assume("1 + j ≠ 0", ONE + x.j, "≠")
+    number = t.atom("reciprocal", ONE + x.j, "1 + j ≠ 0", "1/(1+j)")
+    M = number * Identity("p")
+    for body in (x.at(M), x.inner(M)):
+        t.atom("spectral", Det(body), name=f"det {len(t.declared)}")
+    lemma = x.loops(Det(x.S), (x.at(M), x.inner(M)), (x.at(x.B), x.inner(x.B)))
+    statement = equal(x.log(x.f), right_of(x, x.A, x.B, Det(x.S)))
+    rejects(check_mirrored, statement, [lemma], t.reading(), "M real")
+
+
 def test_mirrored_needs_a_positive_constant(x: World, reading: Reading):
     """With c = s the factor is no number; ln det A is not declared, for det A may be negative."""
     A, B = x.A, x.B
@@ -416,6 +429,17 @@ def test_a_scalar_that_is_defined_by_the_angle(x: World):
     t.atom("improper", x.weight * g, name="∫ g")
     with pytest.raises(Rejected, match="function of the point alone"):
         value(circle(g, x.w), t.reading())
+
+
+def test_a_matrix_that_is_defined_by_the_angle(x: World):
+    """∫ det(ωI) dω over (-π, π) is not that of 2 det(ωI)/(1 + ω^2) over the axis."""
+    t = World().t
+    M = t.matrix("M", "p", "p")
+    t.define("M", M, x.w * Identity("p"))
+    t.atom("spectral", Det(M), name="det M")
+    t.atom("improper", x.weight * Det(M), name="∫ det M")
+    with pytest.raises(Rejected):
+        value(circle(Det(M), x.w), t.reading())
 
 
 def test_a_parameter_is_not_replaced_by_what_depends_on_the_angle(x: World, reading: Reading):
