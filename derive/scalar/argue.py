@@ -24,10 +24,24 @@ from derive.scalar.flint_ring import FlintRing
 from derive.scalar.ideal import Ideal
 from derive.scalar.instances import Instance, Instances
 from derive.scalar.proof import (
-    Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, claims_of, known_fact, needs_of, plain, upright,
+    Either,
+    Factor,
+    Leaf,
+    Proof,
+    Reason,
+    Square,
+    Step,
+    Tree,
+    Turned,
+    claims_of,
+    known_fact,
+    needs_of,
+    plain,
+    upright,
 )  # fmt: skip
 from derive.scalar.ratio import Beyond, Numbers, Ratio
-from derive.scalar.real_closed import Budget, Fact as Claim, ask
+from derive.scalar.real_closed import Budget, ask
+from derive.scalar.real_closed import Fact as Claim
 from derive.scalar.search import Remainders, contradiction, products
 from derive.scalar.system import Case, Split, System, proportional, sign_of, system
 
@@ -333,7 +347,7 @@ def _multipliers(letters: Sequence[tuple[str, Poly]]) -> Iterator[tuple[int, lis
     pairs = [*squares, *(a * b for a, b in combinations_with_replacement(squares, 2))]
     every = [p for _, p in letters]
     sums = [a + b.scale(c) for a, b in combinations(every, 2) for c in (-1, 1)]
-    sums += [a * a - b * b for a, b in combinations(squares, 2)]
+    sums = list(map(plain, (*sums, *(a * a - b * b for a, b in combinations(squares, 2)))))
     yield from ((1, squares), (2, squares), (3, []), (3, squares), (4, []), (3, pairs), (1, [*sums, *pairs]), (2, sums))
 
 

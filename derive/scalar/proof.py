@@ -21,8 +21,8 @@ from derive.scalar.ratio import Beyond, KernelRing, Numbers, Ratio
 from derive.scalar.system import Case, Split, System, proportional, sign_of, system
 
 __all__ = [
-    "ANSWERS", "Either", "Factor", "Leaf", "Proof", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of", "known_fact",
-    "leaves", "needs_of", "upright",
+    "ANSWERS", "Either", "Factor", "Leaf", "Proof", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of",
+    "known_fact", "leaves", "needs_of", "plain", "upright",
 ]  # fmt: skip
 
 STRICT = {"≥": False, ">": True, "≠": True}

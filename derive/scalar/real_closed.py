@@ -93,8 +93,7 @@ def _product(c: Fraction, letters: Sequence[str]) -> str:
 
 
 def _spent(solver: Any) -> int:
-    found = {key: value for key, value in solver.statistics()}
-    return int(found.get("rlimit count", 0))
+    return int(dict(iter(solver.statistics())).get("rlimit count", 0))
 
 
 def _model(model: Any, letters: Sequence[str], context: Any, digits: int) -> dict[str, Fraction]:

@@ -109,7 +109,7 @@ def test_steps_that_are_missing_are_rejected():
     row = next(
         r
         for r in PROVED
-        if r.why == "P R/D" and "(1 - L_f C)" in r.latex or r.why == "the reciprocal of the other form"
+        if (r.why == "P R/D" and "(1 - L_f C)" in r.latex) or r.why == "the reciprocal of the other form"
     )
     data = dict(decided(row).certificate or {})
     steps = data["proof"]["steps"]
@@ -142,7 +142,8 @@ def test_false_claims_get_no_certificate_of_a_true_one():
     "change",
     [
         {"rule": "z3"}, {"relations": ["V > 0"]}, {"symbols": []}, {"scalar": False}, {"theory": DT}, {"more": 1},
-        {"proof": {"impossible": True}}, {"proof": {"steps": []}}, {"proof": []}, {"proof": {"steps": [{"rule": "z3"}]}},
+        {"proof": {"impossible": True}}, {"proof": {"steps": []}}, {"proof": []},
+        {"proof": {"steps": [{"rule": "z3"}]}},
         {"proof": {"steps": [{"rule": "known"}] * 9}}, {"proof": {"alternatives": 0, "proofs": []}},
         {"proof": {"alternatives": 7, "proofs": [{"steps": []}]}},
     ],
@@ -364,7 +365,7 @@ def test_functions_and_rates(latex: str, verdict: Verdict):
     assert decide_scalar(statement(KB, latex), near=False).verdict is verdict
 
 
-# ------------------------------------------------------------------------------------------------ nearest, order, imports
+# ------------------------------------------------------------------------------------------------ nearest, order
 @pytest.mark.parametrize(
     ("theory", "latex", "edit", "true"),
     [
