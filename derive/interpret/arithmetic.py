@@ -10,8 +10,8 @@ from derive.functions import Infinity, Power, Quotient, Root
 from derive.interpret.shapes import NotUnderstood, Shape, Typed, misfit
 from derive.latex import latex
 from derive.latex import syntax as s
-from derive.spectral import Conjugate, Entry
-from derive.terms import Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero, walk
+from derive.spectral import Conjugate
+from derive.terms import Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Trace, Transpose, Zero, walk
 
 if TYPE_CHECKING:
     from derive.interpret.reader import Reader
@@ -52,21 +52,31 @@ def common(parts: list[Typed], reader: Reader) -> Shape:
     for other in matrices[1:]:
         if not reader.shapes.agree(matrices[0][1], other[1]):  # type: ignore[arg-type]
             raise misfit(reader.shapes, "they are not added or compared", matrices[0], other)
-    return matrices[0][1] if matrices else None
+    numbers = any(shape is None and not _is_zero(term) for term, shape in parts)
+    return matrices[0][1] if matrices and not (numbers and single(matrices[0][1], reader)) else None
+
+
+def _is_zero(term: Term) -> bool:
+    return isinstance(term, Number) and term.value == 0
+
+
+def single(shape: Shape, reader: Reader) -> bool:
+    """Tell whether a shape is one row and one column."""
+    return shape is not None and (reader.shapes.find(shape[0]), reader.shapes.find(shape[1])) == UNIT
 
 
 def adapted(typed: Typed, shape: Shape, reader: Reader) -> Term:
-    """Return a term that stands beside terms of a shape: 0 and 1 are matrices there."""
+    """Return a term that stands beside terms of a shape: 0 and 1 are matrices there, and 1 x 1 matrices numbers."""
     term, own = typed
-    if own is not None or shape is None:
+    if shape is None:
+        return term if own is None else Trace(term)
+    if own is not None:
         return term
     shapes = reader.shapes
     if isinstance(term, Number) and term.value == 0:
         return Zero(*shape)
     if isinstance(term, Number) and term.value == 1 and shapes.same(*shape):
         return Identity(shape[0])
-    if (shapes.find(shape[0]), shapes.find(shape[1])) == UNIT:
-        return product([term, Identity("1")])
     said = f"{latex(term)} is a number beside a matrix of {shapes.show(shape)}"
     multiple = latex(product([term, Identity("n")]))
     raise NotUnderstood(f"shapes: {said}; write {multiple}, or read all dimensions as 1 (scalar)")
@@ -89,11 +99,11 @@ def multiplied(parts: list[Typed], reader: Reader) -> Typed:
             (group if group else done).append(term)
             continue
         if shape is not None and not reader.shapes.same(shape[1], own[0]):
-            if (reader.shapes.find(shape[0]), reader.shapes.find(shape[1])) == UNIT:
-                done.append(Entry(product(group)))
+            if single(shape, reader):
+                done.append(Trace(product(group)))
                 group, shape = [], None
-            elif (reader.shapes.find(own[0]), reader.shapes.find(own[1])) == UNIT:
-                group.append(Entry(term))
+            elif single(own, reader):
+                group.append(Trace(term))
                 continue
             else:
                 assert last is not None
@@ -134,10 +144,10 @@ def divided(top: Typed, bottom: Typed, reader: Reader) -> Typed:
     """Return a fraction of two terms."""
     (above, shape), (below, other) = top, bottom
     if other is not None:
-        if (reader.shapes.find(other[0]), reader.shapes.find(other[1])) != UNIT:
+        if not single(other, reader):
             one, two = (latex(product(list(f))) for f in ((Inverse(below), above), (above, Inverse(below))))
             raise NotUnderstood(f"a fraction of matrices: write {one} or {two}, or read all dimensions as 1 (scalar)")
-        below = Entry(below)
+        below = Trace(below)
     if isinstance(below, Number):
         if below.value == 0:
             raise NotUnderstood(f"{latex(above)} is divided by zero")
@@ -247,17 +257,20 @@ def transpose(typed: Typed, mark: str, reader: Reader) -> Typed:
     term, shape = typed
     if mark in CONJUGATE:
         root = isinstance(term, Symbol) and term.name in reader.theory.theory.families
-        term = Conjugate(term) if root and isinstance(term, Symbol) else conjugated(term)
+        term = Conjugate(term) if root and isinstance(term, Symbol) else conjugated(term, reader)
     return (term, None) if shape is None else (Transpose(term), (shape[1], shape[0]))
 
 
-def conjugated(term: Term) -> Term:
+def conjugated(term: Term, reader: Reader) -> Term:
     """Return the complex conjugate of a term with real matrices: jω becomes -jω. That of a root has its own sign.
 
     Raises:
         NotUnderstood: the term contains s, of which the conjugate and -s are two readings.
     """
     names = {n.name for n in walk(term) if isinstance(n, Symbol)}
+    spectra = [n for n in names if n in reader.theory.theory.complex and n not in COMPLEX and n != "ω"]
+    if spectra:
+        raise NotUnderstood(f"a star on {spectra[0]}: write the transpose, or the value at the opposite frequency")
     if names & {"s", "z"}:
         raise NotUnderstood("a star on a function of s: the conjugate, or the value at -s transposed; write which")
     if not names & COMPLEX:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
 from derive.interpret.names import spell
-from derive.interpret.shapes import Misfit, NotUnderstood, rebuilt
+from derive.interpret.shapes import UNKNOWN, Misfit, NotUnderstood, Shape, rebuilt
 from derive.latex import plain
 from derive.latex import syntax as s
 from derive.terms import Dot, Equation, Expect, Identity, Number, Symbol, Term, Transpose, Zero, walk
@@ -131,9 +131,12 @@ class Assumptions:
         """Take up Z = C P C' + R, which defines a letter that the theory does not know."""
         match node:
             case s.Related((s.Name() as name, body), ("=" | ":=",)) if not name.accents or "dot" not in name.accents:
-                if self.reader.named(name) is not None or name.letter == "I":
+                known = self.reader.named(name)
+                if name.letter == "I":
                     return False
                 term, shape = self.reader.read(body)
+                if known is not None and (_occurs(known[0], term) or not self._shadows(known[1], shape)):
+                    return False
                 symbol = self.reader.introduce(name)
                 if shape is None:
                     symbol = replace(symbol, rows="", cols="", scalar=True)
@@ -145,6 +148,13 @@ class Assumptions:
             case _:
                 return False
 
+    def _shadows(self, known: Shape, given: Shape) -> bool:
+        """Tell whether a letter is given another shape than the theory's: it is a new one then."""
+        if known is None or given is None:
+            return False
+        found = [self.reader.shapes.find(size) for size in (*known, *given)]
+        return not any(UNKNOWN in size for size in found) and found[:2] != found[2:]
+
     # -------------------------------------------------------------------------------------------- result
     def settled(self) -> list[Equation]:
         """Return the given equations with all dimensions found."""
@@ -152,6 +162,12 @@ class Assumptions:
             settle = self.reader.shapes.settle
             self.cache = [Equation(settle(e.lhs), e.relation, settle(e.rhs)) for e, _ in self.found]
         return self.cache
+
+    def within(self) -> list[Term]:
+        """Return what letters for roots and extreme eigenvalues stand for."""
+        reader = self.reader
+        extremes = [reader.shapes.settle(term) for _, term, _ in reader.eigenvalues.values()]
+        return [*(of for _, of in reader.roots.values()), *extremes]
 
     def extend(self, theory: ClaimTheory) -> ClaimTheory:
         """Return the theory with what is given."""
@@ -168,6 +184,8 @@ class Assumptions:
             _add_root(made, root, of)
         for symbol, term, kind in reader.eigenvalues.values():
             _add_extreme(made, symbol, reader.shapes.settle(term), kind)
+        new = {symbol.name for symbol in reader.new.values()}
+        made.nonnegative |= {name for e in self.settled() if (name := _signed(e)) in new}
         names: list[str] = []
         conditions: list[Equation] = []
         for (_, defines), equation in zip(self.found, self.settled(), strict=True):
@@ -196,6 +214,15 @@ class Assumptions:
         for old in overridden(equation, made):
             del made.declared[old]
         made.assume(name, equation.lhs, equation.relation, equation.rhs, "given")
+
+
+def _signed(equation: Equation) -> str:
+    """Return the name of a number that is said to be not negative, or nothing."""
+    match equation:
+        case Equation(Symbol(scalar=True, name=name), "≥" | ">", Number(value)) if value >= 0:
+            return name
+        case _:
+            return ""
 
 
 def _is_number(equation: Equation) -> bool:

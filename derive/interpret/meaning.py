@@ -13,7 +13,7 @@ from derive.interpret.shapes import Misfit, NotUnderstood, Typed
 from derive.interpret.statement import Statement
 from derive.latex import latex
 from derive.latex import syntax as s
-from derive.terms import Equation, Symbol, walk
+from derive.terms import Equation, Symbol, Term, walk
 from derive.theory.claims.base import ClaimTheory
 
 ORDER = {"≥": ("⪰", "≥"), ">": ("≻", ">"), "⪰": ("⪰", "≥"), "≻": ("≻", ">")}
@@ -55,7 +55,7 @@ def understand(
             raise NotUnderstood(str(error)) from None
         raise
     equations = [settled(e, reader) for e in equations]
-    letters = _letters([*equations, *given.settled()])
+    letters = _letters([*equations, *given.settled()], given.within())
     extended = given.extend(theory.about(letters))
     return Statement(tuple(equations), symbols_of(equations), extended, scalar, given.names)
 
@@ -83,9 +83,10 @@ def spelling(letter: str) -> str:
             raise NotUnderstood(f"a notation: expected a letter such as P or \\hat{{x}}_k, got {letter}")
 
 
-def _letters(equations: Sequence[Equation]) -> set[str]:
-    """Return the names of the letters in equations, and the times at which they are used as "@τ"."""
-    found = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol)]
+def _letters(equations: Sequence[Equation], within: Sequence[Term]) -> set[str]:
+    """Return the names of the letters in equations and terms, and the times at which they are used as "@τ"."""
+    terms = (*(side for e in equations for side in (e.lhs, e.rhs)), *within)
+    found = [n for term in terms for n in walk(term) if isinstance(n, Symbol)]
     return {n.name for n in found} | {f"@{time}" for n in found for time in n.args}
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from derive.functions import Abs, Arctan, Definite, Exp, Limit, Log, Max, Root
-from derive.interpret.arithmetic import COMPLEX, ONE, adapted, square
-from derive.interpret.shapes import BESIDE, Misfit, NotUnderstood, Typed
+from derive.interpret.arithmetic import COMPLEX, ONE, adapted, single, square
+from derive.interpret.shapes import BESIDE, Misfit, NotUnderstood, Typed, rebuilt
 from derive.interpret.times import time_of
 from derive.latex import latex
 from derive.latex import syntax as s
-from derive.spectral import Det, Entry, ImaginaryPart, Modulus, RealPart, Total
+from derive.spectral import Det, ImaginaryPart, Modulus, RealPart, Total
 from derive.terms import (
     Block,
+    Delta,
     Dot,
     Expect,
     Gradient,
@@ -75,9 +77,9 @@ def as_number(typed: Typed, what: str, reader: Reader) -> Term:
     term, shape = typed
     if shape is None:
         return term
-    if tuple(map(reader.shapes.find, shape)) == ("1", "1"):
-        return Entry(term)
-    raise Misfit(f"shapes: {what} is {latex(term)}, a matrix of {reader.shapes.show(shape)}; expected a number")
+    if single(shape, reader):
+        return Trace(term)
+    raise NotUnderstood(f"shapes: {what} is {latex(term)}, a matrix of {reader.shapes.show(shape)}; expected a number")
 
 
 def part(function: str, value: Term, reader: Reader) -> Term:
@@ -137,7 +139,7 @@ def fenced(node: s.Fenced, reader: Reader) -> Typed:
 def absolute(typed: Typed, reader: Reader) -> Typed:
     """Return the absolute value of a number, the modulus of a complex one."""
     term, shape = typed
-    if shape is not None and tuple(map(reader.shapes.find, shape)) != ("1", "1"):
+    if shape is not None and not single(shape, reader):
         said = latex(term)
         raise NotUnderstood(f"|{said}| of a matrix: write \\det({said}), or read all dimensions as 1 (scalar)")
     value = as_number(typed, "an absolute value", reader)
@@ -201,12 +203,33 @@ def integrated(node: s.Integrated, reader: Reader) -> Typed:
     lower, upper = time_of(node.lower), time_of(node.upper)
     variable = time_of(node.variable)
     if variable is not None and lower == "t0" and upper == "t" and shape is not None:
+        free = {a for n in walk(body) for a in times_in(n)}
+        if "τ" not in free:  # the name of the variable says nothing; the theory writes τ
+            body, variable = retimed(body, variable, "τ"), "τ"
         return Integral(body, variable), shape
     symbol, _ = reader.read(node.variable)
     if not isinstance(symbol, Symbol):
         raise NotUnderstood("an integral: expected a variable")
     ends = reader.read(node.lower)[0], reader.read(node.upper)[0]
     return Definite(body, symbol, *ends), shape
+
+
+def times_in(term: Term) -> tuple[str, ...]:
+    """Return the times of a letter, a delta or an integral."""
+    if isinstance(term, Integral):
+        return (term.variable,)
+    return term.args if isinstance(term, Symbol) else (term.one, term.two) if isinstance(term, Delta) else ()
+
+
+def retimed(term: Term, old: str, new: str) -> Term:
+    """Return a term at another time."""
+    match term:
+        case Symbol(args=args):
+            return replace(term, args=tuple(new if a == old else a for a in args), show_args=None) if args else term
+        case Delta(one, two):
+            return Delta(new if one == old else one, new if two == old else two)
+        case _:
+            return rebuilt(term, lambda t: retimed(t, old, new))
 
 
 def summed(node: s.Summed, reader: Reader) -> Typed:

@@ -112,7 +112,7 @@ class Reader:
         accent = next((a for a in node.accents if a in ("hat", "bar", "tilde")), "")
         glyph = Glyph(node.letter if len(node.letter) == 1 else "\\" + node.letter, accent, node.sub, node.sup)
         number = self.scalar or _is_greek(node.letter)
-        name = spelled if spelled not in self.theory.theory.symbols else spelled + "'"
+        name = spelled if spelled not in self.theory.theory.symbols else spelled + " (given)"
         if number:
             symbol = Symbol(name, glyph=glyph, scalar=True)
         else:

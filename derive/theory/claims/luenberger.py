@@ -81,8 +81,7 @@ def _names(t: Theory) -> dict[str, Term]:
     names |= {"P_#": s["P_#"], "P_#^-": s["P_#"], "P_#^+": s["P+_#"], "L_#": s["L_#"]}
     names |= {"L_#^f": s["L^f_#"], "L_f,#": s["L^f_#"]}
     names |= {f"{k}_#": s[f"{k}_#"] for k in "xyuewv"}
-    for accent in ("hat", "bar"):
-        names |= {f"{accent} x_#": s["xhat_#"], f"{accent} x_#^-": s["xhat_#"], f"{accent} x_#^+": s["xhat+_#"]}
+    names |= {"hat x_#": s["xhat_#"], "hat x_#^-": s["xhat_#"], "hat x_#^+": s["xhat+_#"]}
     return names | {"e_#^+": s["e+_#"], "e_#^-": s["e_#"]}
 
 
