@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from derive.claim import Answer, Claim, Verdict
+from derive.claim import Answer, Verdict
 
 if TYPE_CHECKING:
     from derive.interpret.statement import Statement
@@ -13,14 +13,7 @@ if TYPE_CHECKING:
 __all__ = ["decide"]
 
 
-def decide(
-    statement: Statement,
-    *,
-    seconds: float = 10.0,
-    explain: bool = False,
-    near: bool = True,
-    source: Claim | None = None,
-) -> Answer:
+def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False, near: bool = True) -> Answer:
     """Decide a statement.
 
     Args:
@@ -28,7 +21,6 @@ def decide(
         seconds: bound on the time.
         explain: look for a counterexample without each hypothesis that a proof uses.
         near: look for the convention in which a refuted claim holds, and for the nearest true formula.
-        source: the claim as it was written, which makes its certificate one that `derive verify` can read.
 
     Returns:
         proved with a certificate that was replayed, its hypotheses satisfiable; refuted with an exact counterexample;
@@ -47,10 +39,6 @@ def decide(
         from derive.decide.matrix import decide_matrix
 
         answer = decide_matrix(statement, seconds, explain)
-        if answer.certificate is not None and source is not None:
-            from derive.decide.certificate import signed
-
-            answer = replace(answer, certificate=signed(answer.certificate, source))
         return _with_neighbours(answer, statement) if answer.verdict is Verdict.refuted and near else answer
     return Answer(Verdict.undecided, assumed=statement.assumed, notes=("there is no rule for claims of this kind",))
 

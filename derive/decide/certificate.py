@@ -15,6 +15,7 @@ from typing import Any
 
 from derive.claim import Claim
 from derive.decide.ground import Introduced, Item, Lemma, accept, symbols
+from derive.decide.hypotheses import addends_in, addends_of
 from derive.decide.order import TraceOrder, TraceProduct
 from derive.decide.parts import Part, replay_part
 from derive.decide.workspace import proof_reading
@@ -53,7 +54,7 @@ def replayed(statement: Statement, items: Sequence[Item], proof: Sequence[Part])
 # ------------------------------------------------------------------------------------------------ writing
 def certificate(statement: Statement, items: Sequence[Item], proof: Sequence[Part]) -> dict[str, Any]:
     """Return the certificate of a statement, without the text it was read from."""
-    theory = symbols(items, statement.theory.theory)
+    theory = symbols(items, statement.theory.theory, statement.equations)
     steps, shown_parts = [_item(item, theory) for item in items], [_part(part, theory) for part in proof]
     body: dict[str, Any] = {"steps": steps, "parts": shown_parts}
     if len(proof) == 1 and len(proof[0].proof.identities) == 1:
@@ -129,6 +130,9 @@ def replay_claim(data: Any) -> None:
         Rejected: it does not prove what it says.
     """
     item = a_dict(data, "certificate")
+    if "proof" in item:
+        _replay_numbers(item)
+        return
     missing = sorted(set(FIRST) - set(item))
     if missing:
         raise InputError(f"certificate: expected the keys {', '.join(FIRST)}, got none of the name {missing[0]}")
@@ -136,17 +140,36 @@ def replay_claim(data: Any) -> None:
     theory = statement.theory.theory
     items: list[Item] = []
     for step in a_list(item["steps"], "steps"):
-        items.append(_read_item(step, Reader(symbols(items, theory))))
-    reader = Reader(symbols(items, theory))
+        items.append(_read_item(step, Reader(symbols(items, theory, statement.equations))))
+    reader = Reader(symbols(items, theory, statement.equations))
     proof = _read_parts(item, reader)
     try:
-        replayed(statement, items, proof)
+        _check_plain(items, proof, replayed(statement, items, proof))
     except (ValueError, IndexError, KeyError) as error:
         raise Rejected(str(error)) from error
     again = signed(certificate(statement, items, proof), claim)
     wrong = [key for key in {*again, *item} if key not in again or key not in item or again[key] != item[key]]
     if wrong:
         raise Rejected(f"the file shows another {sorted(wrong)[0]} than its own")
+
+
+def _check_plain(items: Sequence[Item], proof: Sequence[Part], reading: Reading) -> None:
+    """Reject the transpose of a relation that is its own: an addend is written in one way."""
+    context = reading.context
+    for addend in [t for item in items for t in addends_of(item)] + addends_in(proof):
+        relation = context.relations[addend.relation]
+        if addend.transposed and context.alphabet.transpose(relation) in (relation, -relation):
+            raise Rejected(f"{addend.relation} is its own transpose")
+
+
+def _replay_numbers(item: Mapping[str, Any]) -> None:
+    """Replay the certificate of a claim about numbers."""
+    from derive.scalar.proof_file import replay_numbers
+
+    if not {"latex", "assume", "scalar", "theory"} <= set(item):
+        raise InputError("certificate: expected the keys latex, assume, scalar and theory, got fewer")
+    statement, _ = _statement(item)
+    replay_numbers(item, statement)
 
 
 def _statement(item: Mapping[str, Any]) -> tuple[Statement, Claim]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from derive.context import Theory
+from derive.derivation import DIRECTION
 from derive.kernel import Alphabet, Certificate, Letter, Poly, Rejected, Term, identity, parts, replay
 from derive.real import UNIT
 from derive.rules import (
@@ -22,7 +23,7 @@ from derive.rules import (
     replay_comparison,
     replay_positivity,
 )
-from derive.terms import Glyph, Reading, Symbol
+from derive.terms import Equation, Glyph, Gradient, Reading, Symbol, walk
 
 GENERIC = ("s", "z", "ω")  # scalars that a formula writes for a generic point
 
@@ -223,9 +224,16 @@ def _base(letter: str) -> str:
 
 
 # ------------------------------------------------------------------------------------------------ names
-def symbols(items: Iterable[Item], theory: Theory) -> Theory:
-    """Return the theory with symbols for the letters of introduced inverses, to write and read certificates."""
-    alphabet, fresh = theory.alphabet(), dict[str, Symbol]()
+def directions(equations: Iterable[Equation]) -> dict[str, Symbol]:
+    """Return the letters along which the gradients in some equations are taken."""
+    nodes = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Gradient)]
+    names = {DIRECTION + n.symbol.name: n.symbol for n in nodes}
+    return {name: Symbol(name, s.rows, s.cols, Glyph(name)) for name, s in names.items()}
+
+
+def symbols(items: Iterable[Item], theory: Theory, equations: Iterable[Equation]) -> Theory:
+    """Return the theory with symbols for introduced inverses and directions, to write and read certificates."""
+    alphabet, fresh = theory.alphabet(), directions(equations)
     for item in items:
         if isinstance(item, Introduced):
             symmetric = alphabet.transpose(item.of) == item.of

@@ -16,7 +16,17 @@ from derive.rules import Grid
 from derive.terms import Symbol, walk
 from derive.theory.claims.base import ClaimTheory
 
-__all__ = ["free_gains", "inverses_in", "names_in", "not_needed", "pruned", "used", "without"]
+__all__ = [
+    "addends_in",
+    "addends_of",
+    "free_gains",
+    "inverses_in",
+    "names_in",
+    "not_needed",
+    "pruned",
+    "used",
+    "without",
+]
 
 SUFFIX = re.compile(r"(\[\d+,\d+\]|\.left|\.right|\.value)$")
 
@@ -67,18 +77,19 @@ def _letters(addends: Iterable[Addend], polys: Iterable[Poly]) -> set[str]:
 def pruned(items: Sequence[Item], proof: Sequence[Part], polys: Iterable[Poly]) -> list[Item]:
     """Return the lemmas and inverses that the claim and its proof make use of, in their order."""
     names = {SUFFIX.sub("", n) for part in proof for n in names_in(part)}
-    letters = _letters((), polys) | _letters(_addends(proof), _squares(proof))
+    letters = _letters((), polys) | _letters(addends_in(proof), _squares(proof))
     kept: list[Item] = []
     for item in reversed(items):
         own = item.name if isinstance(item, Lemma) else item.letter
         if own in names or own in letters:
             kept.append(item)
             names |= {SUFFIX.sub("", n) for n in _names_of(item)}
-            letters |= _letters(_own_addends(item), _polys(item))
+            letters |= _letters(addends_of(item), _polys(item))
     return kept[::-1]
 
 
-def _own_addends(item: Item) -> list[Addend]:
+def addends_of(item: Item) -> list[Addend]:
+    """Return the addends in the proof of a lemma or inverse."""
     if isinstance(item, Introduced):
         return [*item.right, *item.left]
     found: list[Addend] = list(item.comparison.terms) if item.comparison else []
@@ -87,12 +98,13 @@ def _own_addends(item: Item) -> list[Addend]:
     return found
 
 
-def _addends(proof: Sequence[Part]) -> list[Addend]:
+def addends_in(proof: Sequence[Part]) -> list[Addend]:
+    """Return the addends in the proofs of the equations."""
     found: list[Addend] = []
     for part in proof:
         found += [t for c in part.proof.identities for t in c.terms]
         found += part.order.terms if part.order else ()
-        found += _own_addends(Lemma("", "", (), part.proof.positivity, part.proof.comparison))
+        found += addends_of(Lemma("", "", (), part.proof.positivity, part.proof.comparison))
     return found
 
 
@@ -176,6 +188,6 @@ def without(work: Workspace, name: str, lhs: Poly, rhs: Poly, relation: str, tra
     if problem is None:
         return None
     relations = {n: p for n, p in problem.relations.items() if n not in names_of(name, [n])}
-    facts = {n: f for n, f in problem.facts.items() if n != name}
+    facts = {n: f for n, f in problem.facts.items() if n != name and n not in work.theory.proved_by}
     fewer = replace(problem, relations=relations, facts=facts)
     return refute(lhs, rhs, fewer, relation=relation, trace=trace, seconds=min(work.left, 0.3))

@@ -9,8 +9,7 @@ from fractions import Fraction
 
 from derive.claim import Counterexample
 from derive.context import names_of
-from derive.decide.ground import Introduced, Item, Lemma, accept
-from derive.derivation import DIRECTION
+from derive.decide.ground import Introduced, Item, Lemma, accept, directions
 from derive.kernel import Certificate, Letter, Poly, Rejected, Term, identity, replay
 from derive.matrix.bearing import bearing
 from derive.matrix.hypotheses import Hypotheses
@@ -22,7 +21,7 @@ from derive.matrix.search import prove
 from derive.real import UNIT
 from derive.rules import Fact, Grid, Positivity, Square
 from derive.spectral import RealPart
-from derive.terms import Equation, Gradient, Number, Reading, Symbol, Zero, lower, walk
+from derive.terms import Equation, Number, Reading, Symbol, Zero, lower
 from derive.theory.claims.base import ClaimTheory
 
 SAMPLES = 2
@@ -39,8 +38,7 @@ def proof_reading(theory: ClaimTheory, equations: Iterable[Equation] = ()) -> Re
     context = reading.context
     relations = {n: p for n, p in context.relations.items() if not any(n in names_of(c, [n]) for c in cases)}
     facts = {n: f for n, f in context.facts.items() if n not in cases}
-    nodes = [n for e in equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Gradient)]
-    along = {DIRECTION + n.symbol.name: Letter(DIRECTION + n.symbol.name, n.symbol.rows, n.symbol.cols) for n in nodes}
+    along = {name: Letter(name, s.rows, s.cols) for name, s in directions(equations).items()}
     alphabet = replace(context.alphabet, letters={**along, **context.alphabet.letters})
     return replace(reading, context=replace(context, alphabet=alphabet, relations=relations, facts=facts))
 
