@@ -29,7 +29,9 @@ READERS = {
 }  # fmt: skip
 NAMES = (".md", ".tex", ".ipynb", ".jsonl")
 TEX = re.compile(r"\\documentclass|\\begin\{document\}|\\section\*?\{|\\usepackage")
-DISPLAY = re.compile(r"\$\$|\\\[|^[ \t>]*(?:```|~~~|:::)|\\begin\{(?:equation|align|gather|multline)", re.MULTILINE)
+DISPLAY = re.compile(
+    r"\$\$|\\\[|^[ \t>]*(?:```|~~~|:::)|\\begin\{(?:equation|align|gather|multline)\*?\}", re.MULTILINE
+)
 
 
 def is_file(argument: str) -> bool:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["Decide", "judge", "read_assumed", "read_item", "unreadable"]
 
 Decide = Callable[..., Answer]
+NO_THEORY = (
+    "no theory is named and none can be guessed; name it with theory=KEY in a comment of the document, or --theory KEY"
+)
 SHARE = 0.9  # of the time for a claim, for its decision
 
 
@@ -43,6 +46,8 @@ def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
         display = read_item(item, claim.latex)
         if not (item.explicit or relates(display)):
             return None
+        if not claim.theory:
+            return Result(claim, "undecided", Answer(Verdict.undecided, notes=(NO_THEORY,)))
         statement = _understood(item, display)
         read_as, found_shapes = echo(statement), shapes(statement)
         answer = _decided(statement, seconds, decide)
@@ -83,15 +88,13 @@ def relates(display: Display) -> bool:
     return any(isinstance(node, Related) for s in display.statements for node in walk(s))
 
 
-def _understood(item: Item, display: Display, *, theory: str = "") -> Statement:
+def _understood(item: Item, display: Display) -> Statement:
     from derive.interpret import understand
     from derive.theory.claims import claim_theory
 
-    if not (theory or item.claim.theory):
-        raise InputError("theory: none was named and none could be guessed; name it with theory=KEY or --theory KEY")
     return understand(
         display,
-        claim_theory(theory or item.claim.theory),
+        claim_theory(item.claim.theory),
         assume=read_assumed(item.setting),
         scalar=item.claim.scalar,
         notation=item.setting.notation,

@@ -116,13 +116,14 @@ def _report(
     if jobs and decide is None and left:
         from derive.check.pool import judge_side_by_side
 
-        judged = iter(judge_side_by_side(left, timeout, jobs, progress))
+        judged = judge_side_by_side(left, timeout, jobs, progress)
     else:
-        judged = (judge(item, timeout, decide) for item in counted(left, progress))
+        judged = [judge(item, timeout, decide) for item in counted(left, progress)]
+    rest = iter(judged)
     results = [
         replace(r, guessed=why)
         for known, (_, why) in zip(found, pairs, strict=True)
-        if (r := known or next(judged)) is not None
+        if (r := known or next(rest)) is not None
     ]
     return Report(tuple(justified(results)), tuple(errors))
 

@@ -97,7 +97,7 @@ def test_comments_steer():
 
 
 def test_a_display_without_end_is_told_with_its_line():
-    assert [e for e in scan_markdown("a\n\n$$\nP = Q\n")] == [
+    assert list(scan_markdown("a\n\n$$\nP = Q\n")) == [
         Broken("expected $$ that ends the display, got the end of the text", 3)
     ]
     (broken,) = scan_markdown("\n\\begin{align}\nP")

@@ -16,10 +16,7 @@ def rows(source, name=""):
     return [("".join(r.latex.split()), r.name) for r in equations(source, name)]
 
 
-@pytest.mark.parametrize(
-    "text",
-    [r"\[P = Q\]", "$$P = Q$$", "\\[ % \\] is a comment\nP = Q\\]"],
-)
+@pytest.mark.parametrize("text", [r"\[P = Q\]", "$$P = Q$$", "\\[ % \\] is a comment\nP = Q\\]"])
 def test_displays(text):
     ((latex, line),) = displayed(f"text\n{text}")
     assert rows(latex) == [("P=Q", "")]
@@ -60,7 +57,8 @@ def test_inline_formulas_are_found():
 
 
 def test_comments_steer():
-    text = "% derive: theory=lqr-ct\nwith $V = I$ % derive: given\n\\begin{equation} % derive: skip\nP = Q\n\\end{equation}"
+    text = "% derive: theory=lqr-ct\nwith $V = I$ % derive: given\n"
+    text += "\\begin{equation} % derive: skip\nP = Q\n\\end{equation}"
     events = list(scan_tex(text))
     assert [e for e in events if isinstance(e, Steer)] == [Steer("theory=lqr-ct", 1), Steer("given", 2, alone=False)]
     assert [e.before for e in events if isinstance(e, Formula)] == ["", "skip"]
@@ -82,9 +80,11 @@ def test_a_display_without_end_is_told_with_its_line(text, sign):
         (r"\label{eq:p} P = Q, \quad (7)", [("P=Q", "7")]),
         (r"P = Q. (3)", [("P=Q", "3")]),
         (r"\begin{equation}\label{eq:p} P = Q.\end{equation}", [("P=Q", "eq:p")]),
-        (r"\begin{align}a&=b\label{q}\\ c&=d \nonumber\\ -e&=f\tag{3}\end{align}.", [("a=b", "q"), ("c=d", ""), ("-e=f", "3")]),
+        (r"\begin{align}a&=b\label{q}\\ c&=d \nonumber\\ -e&=f\tag{3}\end{align}.",
+         [("a=b", "q"), ("c=d", ""), ("-e=f", "3")]),
         (r"\begin{aligned}a&=b\\ c&=d \tag{2}\end{aligned}", [("a=b", "2a"), ("c=d", "2b")]),
-        (r"\begin{equation}\label{x}\begin{split}a&=b\\&\quad+c\\ d&=e\end{split}\end{equation}", [("a=b\\quad+c", "x-1"), ("d=e", "x-2")]),
+        (r"\begin{equation}\label{x}\begin{split}a&=b\\&\quad+c\\ d&=e\end{split}\end{equation}",
+         [("a=b\\quad+c", "x-1"), ("d=e", "x-2")]),
         (r"\begin{gather}a=b\\ c=d\end{gather}", [("a=b", ""), ("c=d", "")]),
         (r"\begin{multline}a=b\\ +c\end{multline}", [("a=b+c", "")]),
         (r"\begin{eqnarray} a &=& b \\ &=& c \\ d &=& e\end{eqnarray}", [("a=b=c", ""), ("d=e", "")]),
@@ -94,7 +94,8 @@ def test_a_display_without_end_is_told_with_its_line(text, sign):
         (r"\begin{align}a&=b&c&=d\end{align}", [("a=b,c=d", "")]),
         (r"\begin{cases}\dot x&=y\\ z&=w\end{cases}", [(r"\dotx=y", ""), ("z=w", "")]),
         (r"M = \begin{bmatrix}a&b\\c&d\end{bmatrix}", [(r"M=\begin{bmatrix}a&b\\c&d\end{bmatrix}", "")]),
-        (r"\begin{align}M &= \begin{bmatrix}a&b\\c&d\end{bmatrix}\\ x&=y\end{align}", [(r"M=\begin{bmatrix}a&b\\c&d\end{bmatrix}", ""), ("x=y", "")]),
+        (r"\begin{align}M &= \begin{bmatrix}a&b\\c&d\end{bmatrix}\\ x&=y\end{align}",
+         [(r"M=\begin{bmatrix}a&b\\c&d\end{bmatrix}", ""), ("x=y", "")]),
         ("a = b % not c\n+ d \\,", [("a=b+d", "")]),
         (r"a = 50\%", [(r"a=50\%", "")]),
         (r"\label{alone}", []),
