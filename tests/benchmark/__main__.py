@@ -6,6 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
+from tests.benchmark.certificates import certificates
 from tests.benchmark.claims import claims
 from tests.benchmark.enclosures import enclosures
 from tests.benchmark.prover import prover
@@ -14,6 +15,7 @@ from tests.benchmark.startup import startup
 from tests.benchmark.table import Row
 
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
+    "certificates": certificates,
     "claims": claims,
     "enclosures": enclosures,
     "prover": prover,
