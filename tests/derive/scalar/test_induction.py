@@ -300,6 +300,25 @@ def test_the_claim_is_supposed_in_the_step_only():
     assert not last(b, Step("forged", Equation(x, "≥", ZERO), "sign", (), Proof(sign=sign), lemma=True))[0]
 
 
+def test_a_statement_that_supposes_itself():
+    """c does not depend on k: the claim at k is the claim at the start."""
+
+    def other(t: Theory) -> None:
+        counting(t)
+        t.scalar("c")
+
+    b = Small(other)
+    c = b.theory.symbols["c"]
+    assert not last(b, forged(b, Equation(c, "=", ZERO), [addend(1, HYPOTHESIS)], [addend(1, HYPOTHESIS)]))[0]
+    for relation in ("≥", ">"):
+        statement = Equation(c, relation, ZERO)
+        sign = Sign(
+            value(c, b.reading), relation, (SignProduct(UNIT, (HYPOTHESIS,)), SignProduct(UNIT, (NEGATION,))), ()
+        )
+        proof = Proof(induction=Induction(sign, sign))
+        assert not last(b, Step("forged", statement, "induction", (), proof, lemma=True))[0]
+
+
 def test_a_statement_that_is_true_up_to_some_step():
     b = Small(counting)
     x, five = b.theory.symbols["x"], Number(Fraction(5))
