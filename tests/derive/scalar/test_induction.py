@@ -551,6 +551,20 @@ def test_a_sequence_depends_on_nothing_that_the_rules_vary():
     assert t.reading().adopted
 
 
+def test_a_sequence_depends_on_its_parameters():
+    """x_k = c^k is not constant in c; a free sequence may depend on anything."""
+    for prepare in (lambda t, c: grows(t, c), lambda t, c: (sequence(t, "x", ONE), grows_freely(t, c))):
+        t = Theory("attack", "A theory for one attack")
+        t.scalar("k")
+        c = t.scalar("c")
+        prepare(t, c)
+        reading, x = t.reading(), t.symbols["x"]
+        assert reading.real.varies("x", "c")
+        for term in (Rate(x, c), Limit(x, c, Infinity()), Start(x, c), Rate(t.symbols["x'"], c)):
+            with pytest.raises(Rejected):
+                value(term, reading)
+
+
 def grows(t: Theory, factor: Symbol) -> None:
     sequence(t, "x", ONE, lambda x: factor * x)
 
