@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 from derive.decide.gradient import gradient_of
 from derive.decide.signals import expanded
@@ -30,9 +30,6 @@ from derive.terms import (
     lower,
 )
 
-if TYPE_CHECKING:
-    from flint import fmpq, fmpq_mat
-
 __all__ = ["NoValue", "Point"]
 
 
@@ -45,9 +42,9 @@ class Point:
 
     def __init__(self, instance: Instance, work: Workspace):
         self.instance, self.work = instance, work
-        self.known: dict[Term, fmpq_mat | fmpq] = {}
+        self.known: dict[Term, Any] = {}
 
-    def value(self, term: Term) -> fmpq_mat | fmpq:
+    def value(self, term: Term) -> Any:
         """Return a matrix, or a number for a scalar or trace.
 
         Raises:
@@ -61,7 +58,7 @@ class Point:
                 raise NoValue(str(error)) from error
         return found
 
-    def _value(self, term: Term) -> fmpq_mat | fmpq:
+    def _value(self, term: Term) -> Any:
         from flint import fmpq, fmpq_mat
 
         match term:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from derive.context import Declared, names_of
-from derive.decide.workspace import Workspace
+from derive.context import Declared
+from derive.decide.workspace import Workspace, leave_out
 from derive.derivation import DIRECTION
 from derive.kernel import Certificate, Poly, Rejected, parts, replay
 from derive.matrix.normal import reduced
@@ -73,7 +73,7 @@ def check_gradient(
     context, gain = reading.context, equation.lhs.symbol.name if isinstance(equation.lhs, Gradient) else ""
     if {parts(a)[0] for _, w in image.terms for a in w} & dependent(gain, theory):
         raise Rejected("a letter under the gradient changes with the gain")
-    anywhere = {n: p for n, p in context.relations.items() if not any(n in names_of(o, [n]) for o in theory.optimal)}
+    anywhere = leave_out(theory.optimal, context.relations)
     replay(identities[0], inner(equation, reading) - image, anywhere, context.alphabet)
     replay(identities[1], gradient_claim(equation, image, reading), context.relations, context.alphabet)
 

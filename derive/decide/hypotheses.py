@@ -9,7 +9,7 @@ from derive.claim import Counterexample
 from derive.context import Declared, DeclaredFact, DeclaredInverse
 from derive.decide.ground import Introduced, Item, Lemma
 from derive.decide.parts import Part
-from derive.decide.workspace import Workspace
+from derive.decide.workspace import Workspace, leave_out
 from derive.kernel import Poly
 from derive.kernel import Term as Addend
 from derive.rules import Grid
@@ -181,13 +181,12 @@ def without(work: Workspace, name: str, lhs: Poly, rhs: Poly, relation: str, tra
     """Search for a counterexample to a claim when one hypothesis is dropped."""
     from dataclasses import replace
 
-    from derive.context import names_of
     from derive.matrix.refute import refute
 
     problem = work.problem()
     if problem is None:
         return None
-    relations = {n: p for n, p in problem.relations.items() if n not in names_of(name, [n])}
+    relations = leave_out([name], problem.relations)
     facts = {n: f for n, f in problem.facts.items() if n != name and n not in work.theory.proved_by}
     fewer = replace(problem, relations=relations, facts=facts)
     return refute(lhs, rhs, fewer, relation=relation, trace=trace, seconds=min(work.left, 0.3))

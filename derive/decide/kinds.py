@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from derive.decide.parts import is_trace
 from derive.functions import is_scalar
 from derive.interpret.statement import Statement
@@ -46,7 +48,5 @@ def _is_matrix_equation(equation: Equation) -> bool:
     if not all(isinstance(node, MATRIX) for side in sides for node in walk(side)):
         return False
     if any(map(is_trace, sides)):
-        return all(
-            is_trace(s) or s == Zero("", "") or s == Number(s.value if isinstance(s, Number) else 0) for s in sides
-        )
+        return all(is_trace(side) or side in (Zero("", ""), Number(Fraction(0))) for side in sides)
     return not is_scalar(equation)

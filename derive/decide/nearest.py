@@ -151,9 +151,9 @@ def _addends(letters: Sequence[Symbol]) -> list[Term]:
 # ------------------------------------------------------------------------------------------------ instances
 def _theory(statement: Statement, letters: Sequence[Symbol]) -> ClaimTheory:
     """Return what may be used when the claim has other letters; assumptions stay as they are."""
-    if statement.assumed:
-        return statement.theory
-    return statement.theory.about({s.name for s in letters})
+    about = statement.theory.about({s.name for s in letters})
+    introduced = any(s.name not in about.theory.symbols for s in statement.symbols)
+    return statement.theory if statement.assumed or introduced else about
 
 
 def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Statement:

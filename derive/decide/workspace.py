@@ -36,11 +36,17 @@ def proof_reading(theory: ClaimTheory, equations: Iterable[Equation] = ()) -> Re
     reading = theory.reading
     cases = reading.real.cases
     context = reading.context
-    relations = {n: p for n, p in context.relations.items() if not any(n in names_of(c, [n]) for c in cases)}
+    relations = leave_out(cases, context.relations)
     facts = {n: f for n, f in context.facts.items() if n not in cases}
     along = {name: Letter(name, s.rows, s.cols) for name, s in directions(equations).items()}
     alphabet = replace(context.alphabet, letters={**along, **context.alphabet.letters})
     return replace(reading, context=replace(context, alphabet=alphabet, relations=relations, facts=facts))
+
+
+def leave_out(names: Iterable[str], relations: Mapping[str, Poly]) -> dict[str, Poly]:
+    """Return the relations without those of some declarations."""
+    gone = {r for name in names for r in names_of(name, relations)}
+    return {n: p for n, p in relations.items() if n not in gone}
 
 
 def conditions(theory: ClaimTheory) -> dict[str, Fact] | None:
@@ -140,7 +146,7 @@ class Workspace:
         context = self.reading.context
         relations, optimal = context.relations, self.theory.optimal
         if every_gain:
-            relations = {n: p for n, p in relations.items() if not any(n in names_of(o, [n]) for o in optimal)}
+            relations = leave_out(optimal, relations)
         inverses = {name: poly for poly, name in self.reading.inverses.items()}
         return Hypotheses(context.alphabet, relations, {}, inverses, context.nonnegative)
 
