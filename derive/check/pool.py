@@ -109,10 +109,9 @@ def judge_side_by_side(
     items: Sequence[Item], seconds: float, jobs: int, progress: Callable[[int, int], None]
 ) -> list[Result | None]:
     """Judge claims in ``jobs`` processes; results in the order of the claims, whatever ends first."""
-    workers = [Worker(seconds) for _ in range(max(1, min(jobs, len(items))))]
+    count = max(1, min(jobs, len(items)))
+    workers: list[Worker] = []
     free: SimpleQueue[Worker] = SimpleQueue()
-    for worker in workers:
-        free.put(worker)
 
     def judged(item: Item) -> Result | None:
         worker = free.get()
@@ -121,8 +120,11 @@ def judge_side_by_side(
         finally:
             free.put(worker)
 
-    executor = ThreadPoolExecutor(len(workers))
+    executor = ThreadPoolExecutor(count)
     try:
+        while len(workers) < count:
+            workers.append(Worker(seconds))
+            free.put(workers[-1])
         futures = [executor.submit(judged, item) for item in items]
         for done, _ in enumerate(as_completed(futures), 1):
             progress(done, len(items))
