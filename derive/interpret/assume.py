@@ -100,9 +100,8 @@ class Assumptions:
             case s.Related((s.Name() as name, s.Matrix() as matrix), ("=" | ":=",)):
                 known = self.reader.named(name)
                 if known is not None and not (isinstance(known[0], Symbol) and known[0].args):
-                    raise NotUnderstood(
-                        f"{plain(known[0])}: expected a letter that is not constant, or a new one, as blocks"
-                    )
+                    said = f"{plain(known[0])} is a constant of the theory"
+                    raise NotUnderstood(f"a block matrix: {said}; expected a new letter, or one that varies")
                 self.reader.blocks[spell(name, self.reader.notation)] = matrix
                 return True
             case _:

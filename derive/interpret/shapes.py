@@ -20,7 +20,7 @@ class NotUnderstood(InputError):  # noqa: N818 - what a reader says of a formula
     ``span`` are the columns of the smallest piece of the formula that has none, if they are known.
     """
 
-    span: tuple[int, int] = (0, 0)
+    span: tuple[int, int] | None = None
 
 
 class Misfit(NotUnderstood):
