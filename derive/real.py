@@ -123,7 +123,7 @@ class Real:
         if name == variable or (variable and self.indexed(name) == variable):
             return True
         if self.sequence(name):
-            return variable == STEPS or not self.determined(name) or variable in self.reached({name})
+            return not self.determined(name) or variable in self.reached({name})
         atom = self.atoms.get(name)
         if atom is None or (atom.kind == "improper" and variable == FREQUENCY):
             return False

@@ -24,6 +24,7 @@ from derive.kernel import ANY, Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import HYPOTHESIS, NEGATION, Sign, SignProduct, scalars_of
 from derive.replay import verify_data
+from derive.spectral import Det
 from derive.terms import Equation, Glyph, Number, Symbol, Term, Zero
 from derive.theory import lecture
 from derive.theory.builder import NotDerived
@@ -456,18 +457,24 @@ def test_the_reason_of_a_root_counts_as_well():
     """√y is not negative; that it exists is a case, and y ≥ 0 follows from it for that k only."""
 
     def rooted(t: Theory) -> None:
-        y = t.scalar("y", Glyph("y", sub="k"))
-        after = t.scalar("y'", Glyph("y", sub="k+1"))
-        t.sequence(y, NONE, after)
-        t.define("y'", after, y - ONE)
+        y = sequence(t, "y", NONE, lambda y: y - ONE)
         t.assume("y ≥ 0", y, "≥", case=True)
         t.atom("root", y, "y ≥ 0", "√y")
-        z = t.scalar("z")
-        t.sequence(z, NONE, t.scalar("z'"))
-        t.define("z'", t.symbols["z'"], z + Root(y))
+        sequence(t, "z", NONE, lambda z: z + Root(y))
 
     b = Small(rooted)
     b.fails(b.theory.symbols["z"], "≥", ZERO, using=("√y ≥ 0",))
+
+    def recurring(t: Theory) -> None:
+        y = sequence(t, "y", NONE, lambda y: y - ONE)
+        t.assume("y ≥ 0", y, "≥", case=True)
+        t.atom("root", y, "y ≥ 0", "√y")
+        z = sequence(t, "z", NONE)
+        t.recur("goes on", t.symbols["z'"], z + Root(y))
+
+    b = Small(recurring)
+    with pytest.raises(NotDerived, match="rests on y ≥ 0, which holds k at some value"):
+        b.induct("z ≥ 0", Equation(b.theory.symbols["z"], "≥", ZERO), "", ["√y ≥ 0"], identities=["goes on"])
 
 
 # ------------------------------------------------------------------------------------------------ k and its members
@@ -549,6 +556,16 @@ def test_a_sequence_depends_on_nothing_that_the_rules_vary():
     free(t)
     grows_freely(t, t.scalar("c"))
     assert t.reading().adopted
+
+
+def test_a_sequence_consists_of_real_numbers():
+    def determinant(t: Theory) -> None:
+        M = t.matrix("M", "n", "n")
+        t.complex.add("M")
+        t.atom("spectral", Det(M), name="det M")
+        sequence(t, "x", ONE, lambda x: Det(M) * x)
+
+    rejected_theory(determinant)
 
 
 def test_a_sequence_depends_on_its_parameters():
