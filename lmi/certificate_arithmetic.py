@@ -131,8 +131,6 @@ def _decide(M: Exact, strict: bool) -> bool:
     if not M.is_symmetric:
         raise ValueError("expected a symmetric matrix")
     table = [list(row) for row in M.numerators]
-    if any(row[i] < 0 or (row[i] == 0 and (strict or any(row))) for i, row in enumerate(table)):
-        return False
     return _dominant(table) or _pivots(table, strict)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from derive.errors import InputError
-from derive.numeric.plant import plant_from_mapping
+from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi.certificate import Certificate, ExactPlant, exact_plant, verify
 from lmi.certificate_arithmetic import Exact
@@ -221,6 +221,16 @@ def test_noise_that_is_not_semidefinite_is_said_to_be():
     assert found.bounds.is_covariance
     assert bounds is not None, checks
     assert not bounds.is_covariance
+
+
+def test_what_is_no_covariance_may_be_negative():
+    one = np.eye(1)
+    plant = Plant(time="continuous", A=-one, C=one, W=-one / 2, V=one, N=0 * one, M=one)
+    _, bounds = certified(plant)  # 0 = -2 P - 1/2 - P^2, stabilising at P = -1 + 1/sqrt 2
+    assert not bounds.is_covariance
+    assert bounds.trace.lower < bounds.trace.upper < 0
+    assert (bounds.trace.lower + 1) ** 2 < Fraction(1, 2) < (bounds.trace.upper + 1) ** 2
+    assert bounds.cost == bounds.trace == bounds.variances[0]
 
 
 def test_variances_of_a_covariance_are_not_negative():
