@@ -25,19 +25,20 @@ from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
 from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.example import NumberExample
 from derive.scalar.flint_ring import FlintRing, fraction, rational
-from derive.scalar.instances import Instance, Instances
+from derive.scalar.instances import Instance, Instances, Several
 from derive.scalar.proof import Proof, accept, leaves
 from derive.scalar.proof_file import certificate
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.reasons import bearing_names, letters_of, used_names
-from derive.scalar.system import ROOTS, Split, System, names_in, system
+from derive.scalar.system import ROOTS, Case, Split, System, names_in, system
 from derive.terms import Equation, Symbol, Zero, walk
 from derive.theory.claims.base import split_index
 
 __all__ = ["decide_scalar"]
 
 TIMES = ("t", "τ", "t0")
+MOST = 4  # signs that split the hypotheses
 FIRST, MORE = 60, 600  # instances at which a claim is evaluated before and after a proof is tried
 POINTS = 1_000  # points at which the first instances are looked for
 FEW = 200  # points at which instances are looked for before z3 is asked whether there are any
@@ -67,27 +68,22 @@ class Work:
     ring: FlintRing
     names: Sequence[str]
     known: System
-    instances: Instances
+    cases: tuple[System, ...]
+    instances: Several
     deadline: float
     shown: list[str] = field(default_factory=list[str])
     moving: str = ""  # why values at one instant refute nothing
 
     @classmethod
     def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
-        """Read the hypotheses; a sign that is not known leaves them to the cases of the proof."""
+        """Read the hypotheses, in two cases where a sign decides what they say."""
         names = names_in(statement)
         ring = FlintRing([*names, *ROOTS])
-        known = system(statement, ring, (), without)
-        return cls(
-            statement,
-            ring,
-            names,
-            known,
-            Instances(known, ring, names),
-            deadline,
-            _shown(statement, known),
-            moving(statement),
-        )
+        cases = tuple(_systems(statement, ring, without))
+        known = next((c for c in cases if not c.impossible), cases[0])
+        instances = Several([Instances(c, ring, names) for c in cases])
+        shown = _shown(statement, known)
+        return cls(statement, ring, names, known, cases, instances, deadline, shown, moving(statement))
 
     def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
         """Iterate over the instances that contradict the statement."""
@@ -142,7 +138,7 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
     deadline = monotonic() + seconds
     try:
         work = Work.of(statement, deadline)
-    except (Beyond, Split) as error:
+    except Beyond as error:
         return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
     _satisfiable(work)
     found = work.simplest(work.failures(work.instances.first(FIRST, POINTS)))
@@ -190,16 +186,30 @@ def moving(statement: Statement) -> str:
     return "indices that no step connects" if len(kinds) > 1 else ""
 
 
+def _systems(
+    statement: Statement, ring: FlintRing, without: frozenset[str], cases: tuple[Case, ...] = ()
+) -> Iterator[System]:
+    try:
+        yield system(statement, ring, cases, without)
+    except Split as split:
+        if len(cases) > MOST:
+            raise Beyond("too many cases") from None
+        yield from _systems(statement, ring, without, (*cases, ("nonnegative", split.poly)))
+        yield from _systems(statement, ring, without, (*cases, ("nonnegative", -split.poly)))
+
+
 def _satisfiable(work: Work) -> None:
     """Make sure that some numbers satisfy all hypotheses."""
-    if work.known.impossible:
+    if all(c.impossible for c in work.cases):
         raise InputError(f"assume: expected what the theory allows, got a contradiction with {work.known.impossible}")
     if not work.instances.first(1, FEW) and _possible(work, Budget()) is False:
         raise InputError("assume: expected what the theory allows, got a contradiction; leave one assumption out")
 
 
 def _possible(work: Work, budget: Budget) -> bool | None:
-    return ask(facts_of(work.known), choices_of(work.known), budget).possible
+    """Tell whether the hypotheses of a case have a solution; None if that is not known of one, and of none else."""
+    found = [ask(facts_of(c), choices_of(c), budget).possible for c in work.cases if not c.impossible]
+    return True if True in found else None if None in found else False
 
 
 # ---------------------------------------------------------------------------------------------- proofs
@@ -276,7 +286,7 @@ def _needed(work: Work, names: Sequence[str]) -> dict[str, Counterexample]:
     for name in names:
         try:
             other = Work.of(work.statement, work.deadline, frozenset({name}))
-        except (Beyond, Split):
+        except Beyond:
             continue
         failure = other.simplest(islice(other.failures(other.instances.first(MORE // 3)), 8))
         if failure is not None:

@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import zip_longest
 from typing import Any
 
 from flint import arb, fmpq, fmpq_poly
 
 from derive.scalar.evaluate import BITS, compare
 from derive.scalar.flint_ring import FlintRing, fraction, rational
+from derive.scalar.ratio import Ratio
 from derive.scalar.system import System
 
-__all__ = ["Instance", "Instances"]
+__all__ = ["Instance", "Instances", "Several"]
 
 SIZES = (0, 1, 2, Fraction(1, 2), 3, 4, Fraction(1, 3), Fraction(3, 2), 5)  # absolute values, simplest first
 TRIED = 3_000  # points for the free letters, at most
@@ -41,27 +43,44 @@ class Instance:
         )  # fmt: skip
 
 
+class Several:
+    """The instances of several cases, as those of one."""
+
+    def __init__(self, parts: Sequence[Instances]):
+        self.parts = parts
+        self.free = list(dict.fromkeys(n for p in parts for n in p.free))
+
+    def first(self, count: int, tries: int = TRIED) -> list[Instance]:
+        """Return instances of all cases, those of each the simplest first."""
+        share = -(-count // len(self.parts))
+        found = [p.first(share, tries) for p in self.parts]
+        return [i for same in zip_longest(*found) for i in same if i is not None]
+
+    def at(self, point: Mapping[str, Any]) -> list[Instance]:
+        """Return the instances in which the free letters have these values."""
+        return [i for p in self.parts for i in p.at({n: v for n, v in point.items() if n in p.free})]
+
+
 class Instances:
     """The instances of a system, found as they are asked for."""
 
     def __init__(self, system: System, ring: FlintRing, names: Sequence[str]):
-        self.system, self.ring, self.roots = system, ring, list(system.roots)
-        roots = {name for _, name in self.roots}
-        self.dependent = self._dependent(roots)
-        solved = {*system.values, *self.dependent, *roots}
+        self.system, self.ring = system, ring
+        self.dependent = self._dependent({name for _, name in system.roots})
+        solved = {*system.values, *self.dependent}
         self.free = [n for n in names if n not in solved and not n.startswith("√")]
         self.found: list[Instance] = []
         self.tried = 0
         self.points = iter(()) if system.impossible else self._search()
 
     def _dependent(self, roots: set[str]) -> dict[str, Any]:
-        """Return a letter for each equation that remains, with that equation."""
-        found: dict[str, Any] = {}
+        """Return a letter for each equation that remains, with that equation; for that of a root the root."""
+        found = {name: poly for name, poly in self.system.relations.items() if name in roots}
         for name, poly in self.system.relations.items():
             if name in roots:
                 continue
             degrees = dict(zip(self.ring.names, map(int, poly.degrees()), strict=True))
-            usable = [n for n, d in degrees.items() if d and n not in found and n not in roots]
+            usable = [n for n, d in degrees.items() if d and n not in found]
             if usable:
                 found[min(usable, key=lambda n: (-(degrees[n] == 2), degrees[n], n))] = poly
         return found
@@ -82,9 +101,8 @@ class Instances:
 
     def allows(self, instance: Instance) -> bool:
         """Tell whether an instance of another system of the same letters satisfies this one for certain."""
-        equations = self.system.relations.items()
-        named = {name for _, name in self.system.roots}
-        if any(compare(self.value(p, instance), "=", fmpq(0)) is not True for n, p in equations if n not in named):
+        equations = self.system.relations.values()
+        if any(compare(self.value(p, instance), "=", fmpq(0)) is not True for p in equations):
             return False
         return self._allowed(instance.values)
 
@@ -93,7 +111,8 @@ class Instances:
         point = dict(instance.values)
         for s, name in self.system.roots:
             if name not in point:
-                point[name] = _ball_root(self._at(s, point))
+                inside = self._ratio(s, point)
+                point[name] = _ball_root(inside) if inside is not None else arb("nan")
         return self._at(poly, point)
 
     # ------------------------------------------------------------------------------------- search
@@ -109,26 +128,31 @@ class Instances:
         return [rational(Fraction(x)) for x in signed]
 
     def _complete(self, point: dict[str, Any], said: dict[str, str], open_: list[str]) -> Iterator[Instance]:
+        """Solve the equations that remain, each once its other letters are known."""
         if open_:
-            name = open_[0]
+            ready = (n for n in open_ if self.ring.letters(self.dependent[n]) <= {n, *point})
+            name = next(ready, None)
+            if name is None:
+                return
             for value, words in self._solutions(name, point):
                 now = {**said, name: words} if words else said
-                yield from self._complete({**point, name: value}, now, open_[1:])
+                yield from self._complete({**point, name: value}, now, [n for n in open_ if n != name])
             return
-        for s, name in self.roots:
-            value = self._at(s, point)
-            root = _rational_root(value) if isinstance(value, fmpq) else None
-            if root is None:
-                return
-            point[name] = root
         for name, ratio in self.system.values.items():
-            bottom: Any = fmpq(1)
-            for factor, exponent in ratio.bottom:
-                bottom = bottom * self._at(factor, point) ** exponent
-            if (bottom == 0) if isinstance(bottom, fmpq) else bottom.contains(0):
+            value = self._ratio(ratio, point)
+            if value is None:
                 return
-            point[name] = self._at(ratio.top, point) / bottom
+            point[name] = value
         yield Instance(point, said)
+
+    def _ratio(self, ratio: Ratio, point: Mapping[str, Any]) -> Any:
+        """Return the value of a fraction, None where its denominator may be zero."""
+        bottom: Any = fmpq(1)
+        for factor, exponent in ratio.bottom:
+            bottom = bottom * self._at(factor, point) ** exponent
+        if (bottom == 0) if isinstance(bottom, fmpq) else bottom.contains(0):
+            return None
+        return self._at(ratio.top, point) / bottom
 
     def _at(self, poly: Any, point: Mapping[str, Any]) -> Any:
         if any(isinstance(v, arb) for v in point.values()):
@@ -168,7 +192,9 @@ class Instances:
                 yield from _quadratic(factor)
 
     def _allowed(self, point: Mapping[str, Any]) -> bool:
-        """Tell whether all facts hold for certain."""
+        """Tell whether all facts hold for certain, and the equations as far as balls tell."""
+        if any(compare(self._at(p, point), "=", fmpq(0)) is False for p in self.system.relations.values()):
+            return False
         for kind, poly in self.system.facts.values():
             if compare(self._at(poly, point), RELATION[kind], fmpq(0)) is not True:
                 return False

@@ -16,7 +16,6 @@ from derive.scalar.decision import Work
 from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.instances import Instance
 from derive.scalar.ratio import Beyond
-from derive.scalar.system import Split
 from derive.terms import Equation, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero
 
 __all__ = ["Edited", "edits", "nearest_scalar"]
@@ -44,7 +43,7 @@ def nearest_scalar(statement: Statement, *, seconds: float = 2.0) -> Nearest | N
     deadline, tried = monotonic() + seconds, 0
     try:
         work = Work.of(wide, deadline)
-    except (Beyond, Split):
+    except Beyond:
         return None
     points = _spread(work)
     if not points or work.moving:

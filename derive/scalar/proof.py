@@ -285,6 +285,8 @@ def accept(statement: Statement, tree: Proof, cases: Sequence[Case] = ()) -> Non
         return
     try:
         known = system(statement, KernelRing(), cases)
+        if known.impossible and not cases:
+            raise Rejected(f"the assumptions contradict the theory: {known.impossible}")
         if isinstance(tree, Either):
             _each(statement, tree, known, cases)
             return

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root
 from derive.kernel import ANY, Poly
+from derive.real import TIME
 from derive.spectral import Det, Entry, RealPart
 from derive.terms import Block, Dot, Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Trace, Transpose, Zero
 
@@ -279,9 +280,9 @@ def rate(term: Term) -> Term:
     """Return the time derivative by sum and product rule, in letters that stand for those of letters."""
     match term:
         case Symbol(args=()) | Number() | Identity() | Zero():
-            return Number(Fraction(0))
-        case Symbol():
-            return Symbol("d/dt " + name_of(term), scalar=True)
+            return Number(Fraction(isinstance(term, Symbol) and term.name == TIME))
+        case Symbol(args=(single,)):
+            return Symbol("d/dt " + name_of(term), scalar=True) if single == TIME else Number(Fraction(0))
         case Neg(body):
             return Neg(rate(body))
         case Transpose(body) | Trace(body):

@@ -18,6 +18,7 @@ from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse
 from derive.interpret.statement import Statement
 from derive.kernel import ANY, Poly
 from derive.latex import plain as text
+from derive.real import CIRCLE
 from derive.scalar.ratio import Beyond, Numbers, Ratio, Ring, name_of
 from derive.terms import Block, Dot, Equation, Neg, Number, Product, Sum, Symbol, Term, Zero, walk
 
@@ -67,7 +68,7 @@ class System:
     solved: dict[str, str] = field(default_factory=dict[str, str])  # letter -> declaration that gives it
     alternatives: list[Choice] = field(default_factory=list[Choice])
     signs: dict[str, tuple[int, bool]] = field(default_factory=dict[str, tuple[int, bool]])  # of letters; strict
-    roots: list[tuple[Any, str]] = field(default_factory=list[tuple[Any, str]])
+    roots: list[tuple[Ratio, str]] = field(default_factory=list[tuple[Ratio, str]])
     impossible: str = ""
     consulted: set[str] = field(default_factory=set[str])  # letters and facts whose sign was asked for
 
@@ -157,7 +158,9 @@ class System:
         facts, self.facts = self.facts, {}
         for name, (kind, poly) in facts.items():
             self.fact(name, kind, self._rewritten(poly, sign=True), self.origins[name])
-        self.roots = [(self._rewritten(s), name) for s, name in self.roots]
+        if self.values:
+            numbers = Numbers(self.ring, self.values, _Given(self))
+            self.roots = [(_inserted(s, numbers), name) for s, name in self.roots]
         self.alternatives = [c for choice in self.alternatives if (c := self._open(choice))]
 
     def _open(self, choice: Choice) -> Choice | None:
@@ -225,13 +228,13 @@ class System:
     def root(self, poly: Any) -> str:
         """Return the letter of the root of a polynomial."""
         for s, name in self.roots:
-            if s == poly:
+            if not s.bottom and s.top == poly:
                 return name
         if len(self.roots) == len(ROOTS):
             raise Beyond("more roots than are decided at once")
         name = ROOTS[len(self.roots)]
         r = self.ring.letter(name)
-        self.roots.append((poly, name))
+        self.roots.append((Ratio(poly), name))
         self.relations[name], self.origins[name] = r * r - poly, ""
         self.fact(f"{name} ≥ 0", "nonnegative", r, "")
         return name
@@ -323,6 +326,11 @@ def system(
     """
     found = System(ring)
     theory, assumed = statement.theory.theory, frozenset(statement.assumed)
+    unknown = [e.relation for e in statement.theory.conditions if e.relation not in (*KINDS, "=", ":=")]
+    if unknown:
+        raise Beyond(f"the relation {unknown[0]} is not decided between numbers")
+    if statement.scalar:
+        found.values |= {n: found.numbers().number(1) for n in theory.sizes() if n in theory.symbols}
     items = [item for name, item in theory.declared.items() if name not in without]
     conditions = [c for item in items for c in _conditions(item, assumed)]
     extra = [e for e in statement.theory.conditions if text(e) not in without]
@@ -336,6 +344,9 @@ def system(
                 found._know(name_of(letter), -1, c.kind == "positive")
             case _:
                 pass
+    for i, (relation, poly) in enumerate(cases):
+        if relation != "=":
+            found.fact(f"case {i + 1}", relation, ring.of(poly), "")
     for i, (relation, poly) in enumerate(cases):
         if relation == "=":
             value = found.numbers().evaluate(poly)
@@ -364,10 +375,6 @@ def system(
         except Beyond:
             if c.origin in assumed or c.origin in map(text, extra):
                 raise
-    for i, (kind, poly) in enumerate(cases):
-        if kind != "=":
-            numbers = found.numbers()
-            found.fact(f"case {i + 1}", kind, numbers.same_sign(numbers.evaluate(poly)), "")
     for item in items:
         if isinstance(item, DeclaredFact) and item.case and item.name not in assumed:
             found.alternatives += _detectable(item, found)
@@ -468,9 +475,12 @@ def names_in(statement: Statement) -> list[str]:
     theory = statement.theory.theory
     sides = [t for e in (*statement.equations, *statement.theory.conditions) for t in (e.lhs, e.rhs)]
     claimed = {name for t in sides for name in _names(t)}
-    barred = {n for n in claimed if n in theory.complex and (n in COMPLEX or not theory.symbols[n].scalar)}
+    roots = {*theory.families, *(f.index for f in theory.families.values())}
+    barred = {n for n in claimed if n in theory.complex and (n in COMPLEX or not theory.symbols[n].scalar)} | {
+        n for n in claimed if n in roots or n == CIRCLE
+    }
     if barred:
-        raise Beyond(f"{min(barred)} is a complex number")
+        raise Beyond(f"{min(barred)} is no real letter")
     if claimed & (theory.random | theory.uncentred):
         raise Beyond("signals are no numbers")
     for item in theory.declared.values():
