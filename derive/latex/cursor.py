@@ -9,7 +9,7 @@ from typing import NoReturn, TypeVar
 from derive.latex.syntax import Node, Span
 from derive.latex.tokens import Token, Unreadable
 
-MAX_DEPTH = 40  # brackets, fractions, scripts and operators inside each other
+MAX_DEPTH = 30  # brackets, fractions, scripts and operators inside each other
 T = TypeVar("T")
 
 
@@ -25,6 +25,7 @@ class Cursor:
         self.depth = 0
         self.bar = ""  # the bar that would close the group which is open: | or ‖ or none
         self.integral: list[Node | None] = []  # the integral that is open at this level: its differential, once found
+        self.open_end = -1  # where an operator ended that acts on all that follows, such as a sum
         self.numerator = False  # whether this is the top of a fraction in an integral, which may hold the differential
 
     def look(self, ahead: int = 0) -> Token:

@@ -144,16 +144,18 @@ class Reader(Operators):
     def expression(self) -> Node:
         """Read a sum."""
         start = self.look()
-        addends: list[tuple[str, Node]] = [(self._sign() or "+", self.product())]
+        addends: list[tuple[str, Node]] = [(self._sign() or "+", self.product(alone=True))]
         signed = start.text in SIGNS and start.kind in ("sign", "command")
         while not (self.integral and self.integral[0] is not None):
             sign = self._sign()
             if not sign:
                 break
             self._refuse_spilled_index(addends[-1][1])
-            addends.append((sign, self.product()))
+            addends.append((sign, self.product(alone=True)))
         if len(addends) == 1 and not signed:
             return addends[0][1]
+        if any(isinstance(addend, Plus) and sign != "+" for sign, addend in addends):
+            self.refuse_hidden(start)
         return Plus(tuple(_spliced(addends)), span=self.span(start))
 
     def _sign(self) -> str:
@@ -173,8 +175,11 @@ class Reader(Operators):
             self.ambiguous(following[0], "\\sum (a_i + b_i)", "(\\sum a_i) + b_i", last)
 
     # -------------------------------------------------------------------------------------------- products
-    def product(self) -> Node:
-        """Read a product: factors side by side or with a sign, and divisions with a stroke."""
+    def product(self, alone: bool = False) -> Node:
+        """Read a product: factors side by side or with a sign, and divisions with a stroke.
+
+        A sum in braces may stand alone, as an addend.
+        """
         start, factors, signed = self.look(), list[Node](), False
         while True:
             token = self.look()
@@ -199,6 +204,8 @@ class Reader(Operators):
                 return ONE
             self.fail("a formula")
         flat = _flat(factors)
+        if any(isinstance(f, Plus) for f in flat) and not (alone and len(flat) == 1):
+            self.refuse_hidden(start)
         return flat[0] if len(flat) == 1 else Times(flat, span=self.span(start))
 
     def starts_operand(self, token: Token) -> bool:
@@ -219,6 +226,8 @@ class Reader(Operators):
         if at is not None and self.below_is_d(self.at):
             return [*factors[:at], self._derivative_by_stroke(factors[at:], start)]
         top, bottom = _flat(factors), self.factor()
+        if any(isinstance(f, Plus) for f in (*top, bottom)):
+            self.refuse_hidden(start)
         token = self.look()
         if token.text == "/" and token.kind == "sign":
             self.ambiguous(token, "a/(b/c)", "(a/b)/c", start)
@@ -249,6 +258,8 @@ class Reader(Operators):
         """Read an operand with its scripts; a letter and a group behind it may be one factor or two."""
         start = self.look()
         node = self.atom()
+        if self.open_end == self.at:
+            return [node]
         before = node.factors[:-1] if isinstance(node, Times) else ()
         node = node.factors[-1] if isinstance(node, Times) else node
         sub, sup, exponents = self.marks()
@@ -272,9 +283,9 @@ class Reader(Operators):
 
     def _applies(self, head: Name, group: Fenced) -> bool:
         found = reading(head, group, self.functions)
-        if isinstance(group.body, Name) and group.body.sup and self.look().text in ("^", "'"):
-            return False  # brackets that make room for an exponent: F (P^-)^{-1}
         if found is Reading.BOTH:
+            if isinstance(group.body, Name) and group.body.sup and self.look().text in ("^", "'"):
+                return False  # brackets that make room for an exponent: F (P^-)^{-1}
             self.ambiguous(head, f"a product, {head.letter} \\cdot (...)", f"{head.letter} as a function")
         return found is Reading.APPLIED
 

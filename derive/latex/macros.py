@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from derive.latex.tokens import Token, Unreadable, tokenise
+from derive.latex.tokens import MAX_TOKENS, Token, Unreadable, tokenise
 
 Macro = tuple[int, str]
-MAX_WORK = 100_000  # tokens moved in the expansion of one formula
+MAX_WORK = 20_000  # tokens moved in the expansion of one formula
 NAME = r"\s*\{?\s*\\(?P<name>[A-Za-z]+)\s*\}?\s*"
 COMMAND = re.compile(rf"\\(?:re|provide)?newcommand\*?{NAME}(?:\[(?P<count>[0-9])\])?(?P<default>\s*\[)?")
 OPERATOR = re.compile(rf"\\DeclareMathOperator\*?{NAME}")
@@ -92,6 +92,8 @@ def expand(tokens: list[Token], macros: Mapping[str, Macro]) -> list[Token]:
         work += 1 + len(body) + sum(map(len, arguments))
         if work > MAX_WORK:
             raise Unreadable(token.start, "macros that end", f"\\{token.text}, which grows without bound")
+        if len(out) > MAX_TOKENS:
+            raise Unreadable(token.start, f"a formula of at most {MAX_TOKENS} letters and signs", "one more")
     return out
 
 

@@ -2,6 +2,7 @@ r"""Names with their marks, and scripts: accents, indices as text, transposes, i
 
 from __future__ import annotations
 
+import re
 import unicodedata
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,6 +15,7 @@ from derive.latex.tokens import Token
 from derive.latex.vocabulary import ACCENT_COMMANDS, COMBINING, ELLIPSES, FUNCTIONS, MARKS, ROMAN, STYLES, TRANSPOSES
 
 Exponent = Callable[[Node, Span], Node]
+WORD = re.compile(r"[A-Za-z0-9]+(?: [A-Za-z0-9]+)*")
 UNDRESSED = STYLES | ROMAN | {"mathbb"}
 LOOKAHEAD = 10  # tokens of a script that is told by its pattern
 
@@ -78,7 +80,7 @@ class Names(Cursor):
             return GREEK.get(token.text, token.text) if len(token.text) > 1 else token.text
         if token.kind == "number" or (token.kind == "sign" and token.text in "+-*/,:!'_^."):
             return token.text
-        if token.kind == "word" and token.text:
+        if token.kind == "word" and WORD.fullmatch(token.text):
             return token.text.replace(" ", "")
         if token.kind == "delimiter" and token.text in ("(", ")", "[", "]", "|"):
             return token.text
@@ -152,7 +154,7 @@ class Names(Cursor):
                 return MARKS[shape[0]]
             case ("(", one, ")") if one in "+-" or len(one) < 3:
                 return f"({one})"
-            case (word,) if any(t.kind == "word" for t in self.tokens[self.at : self.at + 2]):
+            case (word,) if WORD.fullmatch(word) and any(t.kind == "word" for t in self.tokens[self.at : self.at + 2]):
                 return word.replace(" ", "")
             case (*letters,) if len(letters) > 1 and self._is_word(letters):
                 return "".join(letters)

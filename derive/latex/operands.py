@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import NoReturn
 
 from derive.latex.names import Names
 from derive.latex.syntax import (
@@ -40,12 +41,15 @@ from derive.latex.vocabulary import (
     MATRICES,
     NO_OPERANDS,
     ROMAN,
+    SIGNS_OF_MULTIPLICATION,
     SIZES,
     STYLES,
     UNMARKED,
 )
 
 FENCES = {"(": "(", "[": "[", "\\{": "{", "|": "|", "‖": "‖"}
+MULTIPLYING = SIGNS_OF_MULTIPLICATION | {"/"}
+SCRIPTS = frozenset(("^", "_", "'"))
 ONE = Digits(Fraction(1))
 
 
@@ -132,15 +136,19 @@ class Operands(Names):
 
         A script behind a product in bold letters is one of its last letter, as the page shows it: \mathbf{PA}^\top.
         """
-        start, before = self.look(), self.tokens[self.at - 1] if self.at else self.tokens[-1]
+        start = self.look()
         node = self.argument()
-        after = self.look()
-        inside = self.starts_operand(after) or after.text in ("^", "_", "'", "/") or _ends_operand(before)
-        hidden = isinstance(node, Plus) and (inside or before.text in ("-", "/", "cdot", "times", "*"))
-        product = isinstance(node, Times) and not (styled and isinstance(node.factors[-1], Name))
-        if hidden or (product and after.text in ("^", "_", "'")):
-            self.ambiguous(start, "a group in brackets ( )", "no group, as braces do not show")
+        after, ended = self.look(), self.open_end == self.at - 1
+        scripted = after.text in SCRIPTS
+        sticks = isinstance(node, Times) and not (styled and isinstance(node.factors[-1], Name))
+        spills = ended and (scripted or after.text in MULTIPLYING or self.starts_operand(after))
+        if spills or (scripted and (sticks or isinstance(node, Plus))):
+            self.refuse_hidden(start)
         return node
+
+    def refuse_hidden(self, start: Token | Node) -> NoReturn:
+        """Raise the error that braces group what is seen as no group."""
+        self.ambiguous(start, "a group in brackets ( )", "no group, as braces do not show")
 
     def starts_operand(self, token: Token) -> bool:
         """Return whether an operand can start with a token."""
@@ -380,8 +388,3 @@ class Operands(Names):
         while self.look().kind == "word" or self.look().text in (",", ".", ";"):
             self.at += 1
         return condition
-
-
-def _ends_operand(token: Token) -> bool:
-    """Return whether a token can be the last of an operand."""
-    return token.kind in ("letter", "number") or token.text in (")", "]", "\\}", "}", "'")

@@ -16,12 +16,13 @@ from derive.latex.syntax import (
     Name,
     Node,
     Over,
+    Plus,
     Raised,
     Related,
     Summed,
     Times,
 )
-from derive.latex.tokens import Token
+from derive.latex.tokens import Token, Unreadable
 from derive.latex.vocabulary import FUNCTION_COMMANDS, MOMENTS, OPEN_FUNCTIONS, ROMAN, TRIGONOMETRIC
 
 DIFFERENTIALS = (Name("d"), Name("partial"))
@@ -31,8 +32,8 @@ THROUGH = frozenset(("det", "tr", "exp"))  # f(X)^T is f(X^T), and for det any p
 class Operators(Operands):
     """Reads what acts on the operands behind it."""
 
-    def product(self) -> Node:
-        """Read a product."""
+    def product(self, alone: bool = False) -> Node:
+        """Read a product; ``alone`` says that a sum in braces may be one."""
         raise NotImplementedError
 
     def factor(self) -> Node:
@@ -48,8 +49,7 @@ class Operators(Operands):
         if self.look().text == "^" and self.look().kind == "sign":
             power = self._power(function, start)
         if function in OPEN_FUNCTIONS and (sub is not None or function == "lim") and not self._listed_next():
-            with self.deeper(start):
-                return Called(function, (self.product(),), sub, span=self.span(start))
+            return Called(function, (self._following(start),), sub, span=self.span(start))
         token = self.look()
         if token.kind == "delimiter" and token.text in ("(", "[", "\\{") and self.starts_operand(token):
             node = self._bracketed(function, sub, start)
@@ -104,6 +104,8 @@ class Operators(Operands):
             self.fail(f"an argument of {function}; one with a sign needs brackets")
         with self.deeper(start):
             factors = [self.factor()]
+            if isinstance(factors[0], Plus):
+                self.refuse_hidden(factors[0])
             while function in TRIGONOMETRIC and self._goes_on() and all(map(_plain, factors)):
                 factors.append(self.factor())
         if not all(map(_plain, factors)) and len(factors) > 1:
@@ -157,8 +159,14 @@ class Operators(Operands):
             name += self.take().text
         if name not in OPEN_FUNCTIONS or (braced and not self.took("}")):
             self.fail("max, min, inf, sup or lim above this", token)
+        return Called(name, (self._following(start),), sub, span=self.span(start))
+
+    def _following(self, start: Token) -> Node:
+        """Read the product that an operator in front of it acts on."""
         with self.deeper(start):
-            return Called(name, (self.product(),), sub, span=self.span(start))
+            body = self.product()
+        self.open_end = self.at
+        return body
 
     def limits(self) -> tuple[Node | None, Node | None]:
         """Read what stands below and above a sign."""
@@ -182,8 +190,7 @@ class Operators(Operands):
             index, lower = lower.sides
         else:
             lower = None
-        with self.deeper(start):
-            body = self.product()
+        body = self._following(start)
         return Summed(body, index, lower, upper, start.text, span=self.span(start))
 
     def at_differential(self, first: bool = False) -> bool:
@@ -222,23 +229,31 @@ class Operators(Operands):
 
     def _integral(self, start: Token) -> Node:
         lower, upper = self.limits()
-        outer = self.integral, self.numerator
-        with self.deeper(start):
-            if self.at_differential(first=True):
-                variable = self.differential()
-                body = self.product() if self.starts_operand(self.look()) and not self.at_differential() else ONE
-            else:
-                holder: list[Node | None] = [None]
-                self.integral, self.numerator = holder, False
-                body = self.expression()
-                found = holder[0]
-                if found is None and not self.at_differential():
-                    self.fail("an operator or the differential of this integral, such as d\\tau")
-                variable = self.differential() if found is None else found
-                self.integral, self.numerator = outer
-                if self.at_differential() and not self.ends_integrand():
-                    self.ambiguous(self.look(), "the differential of another integral", "a factor d")
+        if self.at_differential(first=True):
+            variable = self.differential()
+            empty = self.at_differential() or not self.starts_operand(self.look())
+            body = ONE if empty else self._following(start)
+        else:
+            body, variable = self._integrand(start)
         return Integrated(body, variable, lower, upper, span=self.span(start))
+
+    def _integrand(self, start: Token) -> tuple[Node, Node]:
+        """Read the sum behind the sign up to the differential, which may stand in a fraction."""
+        holder: list[Node | None] = [None]
+        outer, self.integral, self.numerator = (self.integral, self.numerator), holder, False
+        with self.deeper(start):
+            body = self.expression()
+        variable = holder[0]
+        if variable is not None:
+            self.open_end = self.at
+        elif self.at_differential():
+            variable = self.differential()
+        else:
+            self.fail("an operator or the differential of this integral, such as d\\tau")
+        self.integral, self.numerator = outer
+        if self.at_differential() and not self.ends_integrand():
+            self.ambiguous(self.look(), "the differential of another integral", "a factor d")
+        return body, variable
 
     def ends_integrand(self) -> bool:
         """Return whether a differential stands here, and an integral is open for it."""
@@ -253,7 +268,10 @@ class Operators(Operands):
         )
         top = self._measure() if measured else self.argument()
         bottom = self.argument()
-        return self.derivative(top, bottom, start) or Over(top, bottom, span=self.span(start))
+        derivative = self.derivative(top, bottom, start)
+        if derivative is None and isinstance(bottom, Times) and bottom.factors[0] in DIFFERENTIALS:
+            raise Unreadable(start.start, "a derivative, such as \\frac{dx}{dt}, above this d", "another numerator")
+        return derivative or Over(top, bottom, span=self.span(start))
 
     def _measure(self) -> Node:
         """Read the top of a fraction that may hold the differential of the integral around it."""
@@ -303,9 +321,8 @@ class Operators(Operands):
 
     def differentiated(self, start: Token) -> Node:
         """Read what d/dt acts on: the product behind it."""
-        with self.deeper(start):
-            token = self.look()
-            body = self.product()
+        token = self.look()
+        body = self._following(start)
         if isinstance(body, Times) and isinstance(body.factors[0], Fenced) and body.factors[0].fence in ("(", "[", "{"):
             self.ambiguous(token, "d/dt of the product", "d/dt of the brackets alone")
         return body

@@ -27,7 +27,8 @@ from derive.latex.vocabulary import (
     WIDE,
 )
 
-MAX_SOURCE = 20_000  # characters of one displayed formula
+MAX_SOURCE = 10_000  # characters of one displayed formula
+MAX_TOKENS = 6_000  # of one displayed formula
 MAX_DIGITS = 30  # of one number
 
 
@@ -35,17 +36,22 @@ class Unreadable(InputError):  # noqa: N818 (the state of a formula, as its name
     """A formula that cannot be read; ``column`` counts the characters of the source from 0."""
 
     def __init__(self, column: int, expected: str, got: str) -> None:
-        super().__init__(f"column {column + 1}: expected {expected}, got {got}")
-        self.column, self.expected, self.got = column, expected, got
+        self.column, self.expected, self.got = column, _printable(expected), _printable(got)
+        super().__init__(f"column {column + 1}: expected {self.expected}, got {self.got}")
+
+
+def _printable(text: str) -> str:
+    """Return a text on one line, with marks for what cannot be shown."""
+    return "".join(c if c.isprintable() else "�" for c in " ".join(text.split()))
 
 
 def caret(source: str, error: Unreadable) -> str:
     """Return the line of the source that holds the error, and below it a caret under the column."""
     column = min(error.column, len(source))
     start = source.rfind("\n", 0, column) + 1
-    line = source[start:].split("\n", 1)[0].replace("\t", " ")
+    line = source[start : start + 20_000].split("\n", 1)[0]
     left = max(0, column - start - 60)
-    shown = "".join(c if c.isprintable() else "�" for c in line[left : left + 110])
+    shown = "".join(" " if c.isspace() else c if c.isprintable() else "�" for c in line[left : left + 110])
     return f"{shown}\n{' ' * (column - start - left)}^"
 
 
@@ -102,7 +108,12 @@ def tokenise(source: str) -> list[Token]:
     """
     if len(source) > MAX_SOURCE:
         raise Unreadable(0, f"a formula of at most {MAX_SOURCE} characters", f"{len(source)} characters")
-    return list(_raw(source))
+    tokens: list[Token] = []
+    for token in _raw(source):
+        tokens.append(token)
+        if len(tokens) > MAX_TOKENS:
+            raise Unreadable(token.start, f"a formula of at most {MAX_TOKENS} letters and signs", "one more")
+    return tokens
 
 
 def _raw(source: str) -> Iterator[Token]:
