@@ -34,12 +34,12 @@ SCRIPTS = words(
 )
 MARKS = ["", "", "", "", *SCRIPTS]
 SOUP = words(
-    r"\\ \{ \} \| \left( \right) \left| \right| \right. \left. \frac \sqrt \int \sum \prod \lim \max"
-    r" \det \operatorname{tr} \mathrm{tr} \mathrm{d} \mathbf \hat \dot \mathbb{E} E[ \to \preceq \succ \ne := \quad \,"
-    r" \text{and} \begin{bmatrix} \end{bmatrix} \begin{cases} \end{cases} \begin{aligned} \end{aligned}"
-    r" \overset \underset \boxed \partial dt \cdot \frac{d}{dt} \times \dots \forall \label{a} \tag{1} $$ ẋ x̂ ₖ ² ᵀ ⁻¹ ⪰ Σ ∫ √ ½"
-    r" \rm \right \left \big \mid \lVert \underbrace \overline \bar \begin{array}{cc} \end{array} \substack \limits #1 \a \E \delta"
-    r" ^{-T} ^t"
+    r"\\ \{ \} \| \left( \right) \left| \right| \right. \left. \frac \sqrt \int \sum \prod \lim \max \det"
+    r" \operatorname{tr} \mathrm{tr} \mathrm{d} \mathbf \hat \dot \mathbb{E} E[ \to \preceq \succ \ne := \quad \,"
+    r" \text{and} \begin{bmatrix} \end{bmatrix} \begin{cases} \end{cases} \begin{aligned} \end{aligned} \overset"
+    r" \underset \boxed \partial dt \cdot \frac{d}{dt} \times \dots \forall \label{a} \tag{1} $$ ẋ x̂ ₖ ² ᵀ ⁻¹ ⪰ Σ"
+    r" ∫ √ ½ \rm \right \left \big \mid \lVert \underbrace \overline \bar \begin{array}{cc} \end{array} \substack"
+    r" \limits #1 \a \E \delta ^{-T} ^t"
 )
 FRAGMENTS = [*LETTERS, *NUMBERS, *SCRIPTS, *SOUP, *"+-*/=<>(){}[]|&,.;:!^_'~%$\n\0", "\u202e", "\ud800", "\ufffd"]
 
