@@ -10,8 +10,8 @@ from derive.errors import InputError
 from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi.certificate import Certificate, ExactPlant, exact_plant, verify
-from lmi.certificate_arithmetic import Exact
-from lmi.certificate_stability import proved_unstable
+from lmi.certificate_arithmetic import Exact, TooLargeError
+from lmi.certificate_stability import proved_unstable, stabilises
 from lmi.certification import certified
 
 TIMES = ("continuous", "discrete")
@@ -290,14 +290,22 @@ def test_noise_and_weight_are_symmetric(certificate, key):
 
 @pytest.mark.parametrize("time", TIMES)
 def test_no_witness_shows_a_stable_loop_to_be_unstable(time):
-    plant = exact_plant(plant_of(time))
-    gain = certified(plant_of(time)).certificate.gain
-    rng = np.random.default_rng(6)
+    certificate = certified(plant_of(time)).certificate
+    plant, gain, rng = certificate.plant, certificate.gain, np.random.default_rng(6)
     rate = Fraction(0 if time == "continuous" else 1)
+    assert not proved_unstable(plant, gain, rate, certificate.X, [Fraction(1), Fraction(0), Fraction(0)])
     for _ in range(300):
         Y = rng.integers(-5, 6, (3, 3))
         v = [Fraction(int(x)) for x in rng.integers(-2, 3, 3)]
         assert not proved_unstable(plant, gain, rate, Exact.of((Y + Y.T).tolist()), v)
+
+
+def test_routh_is_not_asked_about_many_states():
+    n = 31
+    zero, one = Exact.of([[0]] * n), Exact.identity(n)
+    plant = ExactPlant("continuous", A=one, C=zero.T, W=one, V=Exact.of([[1]]), N=zero, M=one)
+    with pytest.raises(TooLargeError, match="31 states"):
+        stabilises(plant, zero)
 
 
 def test_a_witness_of_instability_is_checked_in_every_part():
