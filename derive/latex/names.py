@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from derive.latex.alphabet import GREEK
 from derive.latex.cursor import Cursor
-from derive.latex.syntax import Digits, Fenced, Inverted, Name, Node, Over, Raised, Span, Transposed
+from derive.latex.syntax import Digits, Fenced, Inverted, Name, Node, Over, Plus, Raised, Span, Transposed
 from derive.latex.tokens import Token
 from derive.latex.vocabulary import ACCENT_COMMANDS, COMBINING, ELLIPSES, FUNCTIONS, MARKS, ROMAN, STYLES, TRANSPOSES
 
@@ -114,10 +114,12 @@ class Names(Cursor):
             self.at += 1
             return "-"
         self._one_digit(start, "^")
-        if shape == ("t",):
-            return self._by_t(start)
         power = self.argument()
-        return lambda body, span: Raised(body, power, span=span)
+        shape = _mark_of(power)
+        special = self._special(shape, start) if shape else None
+        if special is not None:
+            return special
+        return lambda body, span: self._raise(body, power, start, span)
 
     def _shape(self) -> tuple[tuple[str, ...], int]:
         """Return a short script as texts without braces and styles, and the place behind it."""
@@ -172,16 +174,11 @@ class Names(Cursor):
             self.ambiguous(replace(body, span=span), "\\exp(-T)", "e^{-\\top}")
         return Transposed(Inverted(body, span=span), TRANSPOSES[mark], span=span)
 
-    def _by_t(self, start: Token) -> Exponent:
-        """Read ^t, a power of e and of numbers; a matrix with it is a transpose or a power."""
-        power = self.argument()
-
-        def raised(body: Node, span: Span) -> Node:
-            if not isinstance(body, Digits) and body != Name("e"):
-                self.ambiguous(start, "a transpose ^\\top", "a power ^{(t)}")
-            return Raised(body, power, span=span)
-
-        return raised
+    def _raise(self, body: Node, power: Node, start: Token, span: Span) -> Node:
+        """Return a power; a matrix with ^t is a transpose or a power."""
+        if power == Name("t") and not isinstance(body, Digits) and body != Name("e"):
+            self.ambiguous(start, "a transpose ^\\top", "a power ^{(t)}")
+        return Raised(body, power, span=span)
 
     # -------------------------------------------------------------------------------------------- marks together
     def marks(self) -> tuple[str, str, list[Exponent]]:
@@ -223,3 +220,18 @@ class Names(Cursor):
         if isinstance(node, Fenced) and node.fence in ("|", "‖", "[") and not sup:
             return replace(node, sub=sub, span=self.span(start))
         self.fail(f"a letter in front of the {'index ' + sub if sub else 'mark ' + sup}", start)
+
+
+def _mark_of(power: Node) -> tuple[str, ...]:
+    """Return the shape of a power that is a transpose or an inverse, whatever holds its letters together."""
+    match power:
+        case Name(letter, (), "", "") if letter in TRANSPOSES:
+            return (letter,)
+        case Plus((("-", Digits(value)),)) if value == 1:
+            return ("-", "1")
+        case Plus((("-", Name(letter, (), "", "")),)) if letter in TRANSPOSES:
+            return ("-", letter)
+        case Over(Name(letter, (), "", ""), Digits(value)) if letter in TRANSPOSES and value == 2:
+            return (letter, "/", "2")
+        case _:
+            return ()

@@ -81,8 +81,8 @@ def _name(node: Name) -> str:
     for accent in node.accents:
         text = rf"\{'mathring' if accent == 'ring' else accent}{{{text}}}"
     text += f"_{{{_index(node.sub)}}}" if node.sub else ""
-    if len(node.sup) > 1 and not node.sup.startswith("("):
-        return rf"{text}^{{\mathrm{{{node.sup}}}}}"
+    if node.sup.replace(" ", "").isalnum():
+        return rf"{text}^{{\text{{{node.sup}}}}}"
     return text + (f"^{{{_index(node.sup)}}}" if node.sup else "")
 
 
@@ -231,7 +231,9 @@ def _closed(node: Called) -> str:
 # ------------------------------------------------------------------------------------------------ operators
 def _differentiated(node: Differentiated) -> str:
     sign, power = r"\partial" if node.partial else "d", f"^{{{node.order}}}" if node.order > 1 else ""
-    return rf"\frac{{{sign}{power} {_spell(node.body)}}}{{{sign} {_base(node.variable)}{power}}}"
+    body = _spell(node.body)
+    body = rf"\cdot {body}" if body[0].isdigit() else body
+    return rf"\frac{{{sign}{power} {body}}}{{{sign} {_base(node.variable)}{power}}}"
 
 
 def _dotted(node: Dotted) -> str:
