@@ -39,7 +39,7 @@ from derive.scalar.proof import (
     plain,
     upright,
 )  # fmt: skip
-from derive.scalar.ratio import Beyond, Numbers, Ratio
+from derive.scalar.ratio import Numbers, Ratio
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.real_closed import Fact as Claim
 from derive.scalar.search import Remainders, contradiction, products
@@ -183,9 +183,10 @@ class _Search:
             return poly
         return self.ring.letter(self.known.root(poly))
 
-    def function(self, kind: str, argument: Ratio) -> Ratio:
-        """Reject functions that are not algebraic."""
-        raise Beyond(f"{kind} is not decided between numbers")
+    def exponential(self, argument: Ratio) -> Ratio:
+        """Return exp of a number, by the sign of that."""
+        numbers = Numbers(self.ring, {}, self)
+        return self.known.exponential(argument, self.sign(numbers.same_sign(argument)), numbers)
 
     # ------------------------------------------------------------------------------------- signs
     def _signs(self, poly: Any) -> set[int]:

@@ -23,6 +23,7 @@ from derive.interpret.statement import Statement
 from derive.latex import plain
 from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
 from derive.scalar.evaluate import Undefined, Unsure, holds
+from derive.scalar.evolution import evolution
 from derive.scalar.example import NumberExample
 from derive.scalar.flint_ring import FlintRing, fraction, rational
 from derive.scalar.instances import Instance, Instances, Several
@@ -31,7 +32,7 @@ from derive.scalar.proof_file import certificate
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.reasons import bearing_names, letters_of, used_names
-from derive.scalar.system import ROOTS, Case, Split, System, names_in, system
+from derive.scalar.system import POWERS, ROOTS, Case, Split, System, names_in, system
 from derive.terms import Equation, Symbol, Zero, walk
 from derive.theory.claims.base import split_index
 
@@ -78,7 +79,7 @@ class Work:
     def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
         """Read the hypotheses, in two cases where a sign decides what they say."""
         names = names_in(statement)
-        ring = FlintRing([*names, *ROOTS])
+        ring = FlintRing([*names, *ROOTS, *POWERS])
         cases = tuple(_systems(statement, ring, without))
         known = next((c for c in cases if not c.impossible), cases[0])
         instances = Several([Instances(c, ring, names) for c in cases])
@@ -100,7 +101,11 @@ class Work:
         A covariance that varies is taken positive: it starts so, and stays so.
         """
         symbols = self.statement.theory.theory.symbols
-        varying = [n for n in letters_of(self.statement) if n in symbols and symbols[n].args]
+        varying = [
+            n
+            for n in letters_of(self.statement)
+            if n.partition("@")[0] in symbols and symbols[n.partition("@")[0]].args
+        ]
         if self.moving or any(instance.values.get(n, 1) == 0 for n in varying):
             return None
         for i, equation in enumerate(self.statement.equations):
@@ -136,14 +141,45 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
         InputError: the assumptions contradict each other or the theory.
     """
     deadline = monotonic() + seconds
+    solution = evolution(statement)
+    if solution is not None:
+        return _solution(_decided(solution, deadline, explain, near=False, free=True), statement)
+    return _decided(statement, deadline, explain, near)
+
+
+def _decided(statement: Statement, deadline: float, explain: bool, near: bool, free: bool = False) -> Answer:
+    """Decide a statement; ``free`` says that the letters of several times are free of each other."""
     try:
         work = Work.of(statement, deadline)
     except Beyond as error:
         return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
+    work.moving = "" if free else work.moving
     _satisfiable(work)
     found = work.simplest(work.failures(work.instances.first(FIRST, POINTS)))
     answer = _proved_or_not(work, explain) if found is None else _refuted(work, found)
     return _with_neighbours(answer, work) if near and answer.verdict is Verdict.refuted else answer
+
+
+def _solution(answer: Answer, statement: Statement) -> Answer:
+    """Answer for a closed form of a solution, from what its start and its rate are."""
+    named = {*statement.theory.theory.declared, *statement.assumed}
+    used, not_needed = (
+        tuple(h for h in names if h in named) for names in (answer.hypotheses_used, answer.hypotheses_not_needed)
+    )
+    data = answer.certificate and {**answer.certificate, "symbols": sorted(letters_of(statement)), "evolution": True}
+    said = ("a solution is known by its start and its rate",) if answer.verdict is not Verdict.undecided else ()
+    example, lhs = answer.counterexample, statement.equations[0].lhs
+    if example is not None and isinstance(lhs, Symbol):
+        example = replace(example, values={n: v for n, v in example.values.items() if n != lhs.name})
+    return replace(
+        answer,
+        hypotheses_used=used,
+        hypotheses_not_needed=not_needed,
+        assumed=statement.assumed,
+        counterexample=example,
+        notes=(*answer.notes, *said),
+        certificate=data,
+    )
 
 
 def _with_neighbours(answer: Answer, work: Work) -> Answer:
@@ -350,6 +386,12 @@ def _shown(statement: Statement, known: System) -> list[str]:
     order = [n for n in theory.symbols if n in theory.symbols]
     names = [n for n in names_in(statement) if n not in hidden and not n.startswith("d/dt ")]
     return sorted(names, key=lambda n: order.index(n) if n in order else len(order))
+
+
+def _at_start(name: str) -> str:
+    """Return how a reader knows a letter: P(t)@t0 is P(0)."""
+    stem, _, time = name.partition("@")
+    return stem.removesuffix("(t)") + "(0)" if time == "t0" else name
 
 
 def _plain(value: Any) -> Fraction | None:

@@ -68,7 +68,7 @@ class Instances:
         self.system, self.ring = system, ring
         self.dependent = self._dependent({name for _, name in system.roots})
         solved = {*system.values, *self.dependent}
-        self.free = [n for n in names if n not in solved and not n.startswith("√")]
+        self.free = [n for n in names if n not in solved and not n.startswith(("√", "exp "))]
         self.found: list[Instance] = []
         self.tried = 0
         self.points = iter(()) if system.impossible else self._search()
@@ -113,7 +113,11 @@ class Instances:
             if name not in point:
                 inside = self._ratio(s, point)
                 point[name] = _ball_root(inside) if inside is not None else arb("nan")
-        return self._at(poly, point)
+        for argument, name in self.system.exponentials:
+            value = self._ratio(argument, point)
+            point[name] = arb(value).exp() if value is not None else arb("nan")
+        missing = self.ring.letters(poly) - point.keys()
+        return arb("nan") if missing else self._at(poly, point)
 
     # ------------------------------------------------------------------------------------- search
     def _search(self) -> Iterator[dict[str, Any]]:

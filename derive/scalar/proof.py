@@ -10,14 +10,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import gcd, lcm
 from typing import Any
 
 from derive.interpret.statement import Statement
 from derive.kernel import Alphabet, Poly, Rejected
 from derive.real import Sign, replay_sign
 from derive.rules import Context, Fact
-from derive.scalar.ratio import Beyond, KernelRing, Numbers, Ratio
+from derive.scalar.ratio import Beyond, KernelRing, Numbers, Ratio, plain, upright
 from derive.scalar.system import Case, Split, System, proportional, sign_of, system
 
 __all__ = [
@@ -154,20 +153,6 @@ def claims_of(statement: Statement, numbers: Numbers) -> Iterator[tuple[str, Any
         yield relation, difference.top if relation in "=≠" else numbers.same_sign(difference)
 
 
-def upright(poly: Poly) -> bool:
-    """Tell which of q and -q is written: the one whose first coefficient is positive."""
-    return not poly.terms or poly.terms[min(poly.terms)] > 0
-
-
-def plain(poly: Poly) -> Poly:
-    """Return the positive or negative multiple that is written: whole numbers without common factor, upright."""
-    if not poly.terms:
-        return poly
-    whole = lcm(*(c.denominator for c in poly.terms.values()))
-    size = Fraction(gcd(*(int(c * whole) for c in poly.terms.values())), whole)
-    return poly.scale(1 / size if upright(poly) else -1 / size)
-
-
 def needs_of(relation: str, poly: Any, ring: Any) -> list[tuple[str, Any]]:
     """Return what has to be shown of signs; an equation that is one of polynomials needs nothing."""
     if relation != "=":
@@ -216,8 +201,9 @@ class _Replay:
             return self.known.ring.constant(Fraction(1))
         return self.known.ring.letter(self.known.root(poly))
 
-    def function(self, kind: str, argument: Ratio) -> Ratio:
-        raise Rejected(f"{kind} has no rule")
+    def exponential(self, argument: Ratio) -> Ratio:
+        numbers = Numbers(self.known.ring, {}, self)
+        return self.known.exponential(argument, self.sign(numbers.same_sign(argument)), numbers)
 
     def check(self, relation: str, poly: Any) -> None:
         """Check that the next step shows the sign of a polynomial."""

@@ -11,6 +11,7 @@ from derive.interpret.statement import Statement
 from derive.kernel import ANY, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import NEGATION, Sign, SignProduct
+from derive.scalar.evolution import evolution
 from derive.scalar.proof import Either, Factor, Leaf, Proof, Reason, Square, Step, Tree, Turned, accept, leaves, plain
 from derive.scalar.reasons import letters_of
 from derive.serialise import RATIONAL, SCHEMAS
@@ -48,11 +49,13 @@ def replay_numbers(data: Any, statement: Statement) -> None:
         Rejected: it does not prove the statement, or shows something else than its own.
     """
     item = _dict(data, 0)
-    _keys(item, *KEYS)
+    solution = evolution(statement)
+    more = {"evolution": True} if solution is not None else {}
+    _keys(item, *KEYS, *more)
     proof = proof_from_json(item["proof"])
-    accept(statement, proof)
-    again = {**certificate(statement, proof), "latex": item["latex"], "assume": item["assume"]}
-    wrong = sorted(key for key in KEYS if again[key] != item[key])
+    accept(solution or statement, proof)
+    again = {**certificate(statement, proof), **more, "latex": item["latex"], "assume": item["assume"]}
+    wrong = sorted(key for key in again if again[key] != item[key])
     if wrong:
         raise Rejected(f"the file shows another {wrong[0]} than its own")
 

@@ -10,15 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from math import gcd, lcm
 from typing import Any, Protocol
 
-from derive.functions import Abs, Exp, Log, Max, Power, Quotient, Root
+from derive.functions import Abs, Exp, Max, Power, Quotient, Root
 from derive.kernel import ANY, Poly
 from derive.real import TIME
 from derive.spectral import Det, Entry, RealPart
 from derive.terms import Block, Dot, Identity, Inverse, Neg, Number, Product, Sum, Symbol, Term, Trace, Transpose, Zero
 
-__all__ = ["Answers", "Beyond", "KernelRing", "Numbers", "Ratio", "Ring"]
+__all__ = ["Answers", "Beyond", "KernelRing", "Numbers", "Ratio", "Ring", "name_of", "plain", "rate", "upright"]
 
 LARGEST = 3_000  # addends of a polynomial
 HIGHEST = 24  # exponent that is written out
@@ -107,8 +108,8 @@ class Answers(Protocol):
         """Return the root of s >= 0, not negative: a new letter, or the one of the same s."""
         ...
 
-    def function(self, kind: str, argument: Ratio) -> Ratio:
-        """Return a letter for exp or log of a number."""
+    def exponential(self, argument: Ratio) -> Ratio:
+        """Return a letter for exp of a number, or a power of one."""
         ...
 
 
@@ -120,7 +121,7 @@ class Numbers:
         self.rules: Mapping[type[Term], Callable[[Any], Ratio]] = {
             Root: self._root, Abs: self._absolute, Max: self._part, Inverse: self._inverse, Quotient: self._quotient,
             Power: self._power, Dot: lambda term: self.read(rate(term.body)), Block: self._block,
-            Exp: self._function, Log: self._function,
+            Exp: lambda term: self.answers.exponential(self.read(term.body)),
         }  # fmt: skip
 
     # -------------------------------------------------------------------------------------------- arithmetic
@@ -264,8 +265,19 @@ class Numbers:
         turned = found if self.answers.sign(self.same_sign(found)) > 0 else self.negative(found)
         return self.multiply(turned, Ratio(self.answers.root(s)))
 
-    def _function(self, term: Exp | Log) -> Ratio:
-        return self.answers.function("exp" if isinstance(term, Exp) else "log", self.read(term.body))
+
+def upright(poly: Poly) -> bool:
+    """Tell which of q and -q is written: the one whose first coefficient is positive."""
+    return not poly.terms or poly.terms[min(poly.terms)] > 0
+
+
+def plain(poly: Poly) -> Poly:
+    """Return the positive or negative multiple that is written: whole numbers without common factor, upright."""
+    if not poly.terms:
+        return poly
+    whole = lcm(*(c.denominator for c in poly.terms.values()))
+    size = Fraction(gcd(*(int(c * whole) for c in poly.terms.values())), whole)
+    return poly.scale(1 / size if upright(poly) else -1 / size)
 
 
 def name_of(symbol: Symbol) -> str:
@@ -296,6 +308,12 @@ def rate(term: Term) -> Term:
             return Product((Number(Fraction(exponent)), Power(body, exponent - 1), rate(body)))
         case Inverse(body):
             return Neg(Product((rate(body), Inverse(body), Inverse(body))))
+        case Quotient(top, bottom):
+            return Quotient(Sum((Product((rate(top), bottom)), Neg(Product((top, rate(bottom)))))), Power(bottom, 2))
+        case Root(body):
+            return Quotient(rate(body), Product((Number(Fraction(2)), term)))
+        case Exp(body):
+            return Product((rate(body), term))
         case _:
             raise Beyond(f"the derivative of a {type(term).__name__.lower()} is not decided between numbers")
 

@@ -19,13 +19,14 @@ from derive.interpret.statement import Statement
 from derive.kernel import ANY, Poly
 from derive.latex import plain as text
 from derive.real import CIRCLE
-from derive.scalar.ratio import Beyond, Numbers, Ratio, Ring, name_of
+from derive.scalar.ratio import Beyond, Numbers, Ratio, Ring, name_of, plain
 from derive.terms import Block, Dot, Equation, Neg, Number, Product, Sum, Symbol, Term, Zero, walk
 
-__all__ = ["Case", "Split", "System", "names_in", "system"]
+__all__ = ["POWERS", "ROOTS", "Case", "Split", "System", "names_in", "system"]
 
 KINDS = {"≥": "nonnegative", "⪰": "nonnegative", ">": "positive", "≻": "positive", "≠": "nonzero"}
 ONE = Number(Fraction(1))
+POWERS = tuple(f"exp {i}" for i in range(1, 5))  # letters for exponentials
 ROOTS = tuple(f"√{i}" for i in range(1, 9))  # letters for roots
 COMPLEX = ("s", "z", "j")
 
@@ -57,7 +58,8 @@ class System:
 
     ``facts`` are named polynomials with their kind, ``relations`` named polynomials that are zero; ``origins`` the
     declarations that they come from. Of each tuple in ``alternatives`` one holds. ``roots`` are letters with r >= 0 and
-    r^2 = s. ``impossible`` names a fact that is a false statement about numbers.
+    r^2 = s, ``exponentials`` letters with their arguments. ``impossible`` names a fact that is a false statement about
+    numbers.
     """
 
     ring: Ring
@@ -69,6 +71,7 @@ class System:
     alternatives: list[Choice] = field(default_factory=list[Choice])
     signs: dict[str, tuple[int, bool]] = field(default_factory=dict[str, tuple[int, bool]])  # of letters; strict
     roots: list[tuple[Ratio, str]] = field(default_factory=list[tuple[Ratio, str]])
+    exponentials: list[tuple[Ratio, str]] = field(default_factory=list[tuple[Ratio, str]])
     impossible: str = ""
     consulted: set[str] = field(default_factory=set[str])  # letters and facts whose sign was asked for
 
@@ -124,6 +127,16 @@ class System:
             (((names, _), c),) = plain.terms.items()
             if len(names) == 1:
                 self._know(names[0], 0 if kind == "nonzero" else 1 if c > 0 else -1, kind != "nonnegative")
+                self._strictly(name, names[0], origin)
+
+    def _strictly(self, name: str, letter: str, origin: str) -> None:
+        """Note x > 0 of a letter that is known to be >= 0 and not zero, if no fact says so."""
+        sign, strict = self.signs[letter]
+        value = self.ring.letter(letter)
+        said = any(k == "positive" and proportional(self.ring, p, value) for k, p in self.facts.values())
+        if sign and strict and not said:
+            turned = value if sign > 0 else -value
+            self.facts[f"{name}, strictly"], self.origins[f"{name}, strictly"] = ("positive", turned), origin
 
     def _know(self, letter: str, sign: int, strict: bool) -> None:
         known, above = self.signs.get(letter, (0, False))
@@ -239,6 +252,37 @@ class System:
         self.fact(f"{name} ≥ 0", "nonnegative", r, "")
         return name
 
+    def exponential(self, argument: Ratio, sign: int, numbers: Numbers) -> Ratio:
+        """Return exp of a number whose sign is known, as a power of the exponential of its part without a factor."""
+        top = self.ring.poly(argument.top)
+        if not top.terms:
+            return numbers.number(1)
+        times = proportional(self.ring, argument.top, self.ring.of(plain(top))) or Fraction(1)
+        if abs(times.numerator) > 8:
+            raise Beyond("an exponential of a large multiple")
+        base = Ratio(self.ring.of(plain(top).scale(Fraction(1, times.denominator))), argument.bottom)
+        letter = self._letter_of_exp(base, sign if times > 0 else -sign, numbers)
+        power = numbers.number(1)
+        for _ in range(abs(times.numerator)):
+            power = numbers.multiply(power, Ratio(self.ring.letter(letter)))
+        return power if times > 0 else numbers.over(numbers.number(1), power)
+
+    def _letter_of_exp(self, base: Ratio, sign: int, numbers: Numbers) -> str:
+        """Return the letter e of exp(x): e > 0, e >= 1 + x, and e >= 1 or e <= 1 as the sign of x says."""
+        for known, name in self.exponentials:
+            if base.top * numbers.product_of(known.bottom) == known.top * numbers.product_of(base.bottom):
+                return name
+        if len(self.exponentials) == len(POWERS):
+            raise Beyond("more exponentials than are decided at once")
+        name = POWERS[len(self.exponentials)]
+        self.exponentials.append((base, name))
+        value, one = self.ring.letter(name), self.ring.constant(Fraction(1))
+        tangent = numbers.add(Ratio(value - one), numbers.negative(base))
+        self.fact(f"{name} > 0", "positive", value, "")
+        self.fact(f"{name} beside 1", "nonnegative", value - one if sign > 0 else one - value, "")
+        self.fact(f"{name} above its tangent", "nonnegative", numbers.same_sign(tangent), "")
+        return name
+
 
 class _Given:
     """Answers for hypotheses: they are given, and so is what they need."""
@@ -266,8 +310,8 @@ class _Given:
     def root(self, poly: Any) -> Any:
         return self.system.ring.letter(self.system.root(poly))
 
-    def function(self, kind: str, argument: Ratio) -> Ratio:
-        raise Beyond(f"{kind} is not decided between numbers")
+    def exponential(self, argument: Ratio) -> Ratio:
+        raise Beyond("an exponential that is assumed is not decided")
 
 
 def sign_of(known: System, poly: Any) -> int:
