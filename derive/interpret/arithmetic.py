@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.functions import Infinity, Power, Quotient, Root
-from derive.interpret.shapes import NotUnderstood, Shape, Typed, misfit
+from derive.interpret.shapes import NotUnderstood, Shape, Typed, misfit, rebuilt
 from derive.latex import latex
 from derive.latex import syntax as s
 from derive.spectral import Conjugate
@@ -94,8 +94,11 @@ def multiplied(parts: list[Typed], reader: Reader) -> Typed:
     group: list[Term] = []
     shape: Shape = None
     last: Typed | None = None
+    negative = False
     for term, own in parts:
         if own is None:
+            if isinstance(term, Neg):  # a sign in brackets leaves the product
+                term, negative = term.body, not negative
             (group if group else done).append(term)
             continue
         if shape is not None and not reader.shapes.same(shape[1], own[0]):
@@ -111,7 +114,8 @@ def multiplied(parts: list[Typed], reader: Reader) -> Typed:
         shape = own if shape is None else (shape[0], own[1])
         group.append(term)
         last = term, own
-    return product(without_ones(done) if reader.scalar else done + group), shape
+    found = product(without_ones(done) if reader.scalar else done + group)
+    return (Neg(found) if negative else found), shape
 
 
 def product(factors: list[Term]) -> Term:
@@ -273,12 +277,20 @@ def conjugated(term: Term, reader: Reader) -> Term:
         raise NotUnderstood(f"a star on {spectra[0]}: write the transpose, or the value at the opposite frequency")
     if names & {"s", "z"}:
         raise NotUnderstood("a star on a function of s: the conjugate, or the value at -s transposed; write which")
-    if not names & COMPLEX:
-        return term
-    from derive.functions import put
+    return _turned(term) if "j" in names else term
 
-    frequency = next(n for n in walk(term) if isinstance(n, Symbol) and n.name == "ω")
-    return put(term, {frequency: Neg(frequency)})
+
+def _turned(term: Term) -> Term:
+    """Return a term with -j for j."""
+    match term:
+        case Product(factors) if any(isinstance(f, Symbol) and f.name == "j" for f in factors):
+            return Neg(Product(tuple(f if isinstance(f, Symbol) else _turned(f) for f in factors)))
+        case Neg(Product(factors)) if any(isinstance(f, Symbol) and f.name == "j" for f in factors):
+            return Product(tuple(f if isinstance(f, Symbol) else _turned(f) for f in factors))
+        case Symbol(name="j"):
+            return Neg(term)
+        case _:
+            return rebuilt(term, _turned)
 
 
 HANDLERS: Mapping[type[s.Node], Callable[..., Typed]] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
@@ -45,16 +46,20 @@ class Assumptions:
             reader.open = False
 
     def _dimension(self, node: s.Related) -> bool:
-        """Take up l = 1, which makes a dimension 1."""
-        match node:
-            case s.Related((s.Name(letter, (), "", ""), s.Digits(value)), ("=",)) if value == 1:
-                sizes = self.reader.theory.theory.sizes()
-                if letter in sizes and self._known(letter) is None:
-                    self._set(letter)
-                    return True
-                return False
-            case _:
-                return False
+        """Take up l = 1 or l = m = 1, which makes dimensions 1; where all are read as 1 it says nothing."""
+        *names, last = node.sides
+        if last != s.Digits(Fraction(1)) or set(node.relations) != {"="}:
+            return False
+        sizes = [n.letter for n in names if isinstance(n, s.Name) and not (n.accents or n.sub or n.sup)]
+        if (
+            len(sizes) != len(names)
+            or not self.reader.theory.theory.sizes().issuperset(sizes)
+            or any(self._known(n) for n in sizes)
+        ):
+            return False
+        for size in sizes if not self.reader.scalar else ():
+            self._set(size)
+        return True
 
     def _set(self, size: str) -> None:
         self.reader.shapes.count += 1

@@ -14,7 +14,7 @@ from derive.interpret.statement import Statement
 from derive.latex import latex
 from derive.latex import syntax as s
 from derive.terms import Equation, Symbol, Term, walk
-from derive.theory.claims.base import ClaimTheory
+from derive.theory.claims.base import SCALAR, ClaimTheory
 
 ORDER = {"≥": ("⪰", "≥"), ">": ("≻", ">"), "⪰": ("⪰", "≥"), "≻": ("≻", ">")}
 TURNED = {"≤": "≥", "<": ">", "⪯": "⪰", "≺": "≻"}
@@ -48,6 +48,8 @@ def understand(
     given = Assumptions(reader)
     for relation in (r for d in assume for r in relations(d)):
         given.read(relation)
+    if not scalar and theory.outline and theory.outline.sizes <= reader.sizes.keys():
+        return understand(display, theory, assume=assume, scalar=True, notation=notation)
     try:
         equations = [e for relation in relations(display) for e in compared(relation, reader)]
     except Misfit as error:
@@ -55,7 +57,7 @@ def understand(
             raise NotUnderstood(str(error)) from None
         raise
     equations = [settled(e, reader) for e in equations]
-    letters = _letters([*equations, *given.settled()], given.within())
+    letters = _letters([*equations, *given.settled()], given.within()) | ({SCALAR} if scalar else set())
     extended = given.extend(theory.about(letters))
     return Statement(tuple(equations), symbols_of(equations), extended, scalar, given.names)
 

@@ -17,6 +17,7 @@ from derive.kernel import Rejected
 from derive.terms import Equation, Glyph, Reading, Symbol, Term
 
 Proved = tuple[str, str]  # lecture and step
+SCALAR = "1"  # used where all dimensions are 1
 INDEX = re.compile(r"^(?:([ijknNt])([+-]\d+)?|(\d+))$")
 
 
@@ -46,7 +47,10 @@ class ClaimTheory:
     outline: Outline | None = field(default=None, compare=False, repr=False)
 
     def about(self, letters: Collection[str]) -> ClaimTheory:
-        """Return the theory with no more than what bears on the given letters; "@τ" says that one is used at τ."""
+        """Return the theory with no more than what bears on the given letters; "@τ" says that one is used at τ.
+
+        SCALAR among them says that all dimensions are 1.
+        """
         return about(self.outline, frozenset(letters)) if self.outline else self
 
     @cached_property
@@ -69,6 +73,7 @@ class Outline:
     names: Mapping[str, Term]
     declare: Callable[[Draft], None]
     usual: frozenset[str]
+    sizes: frozenset[str]  # of state, output and input: where these are 1, everything commutes
 
     def claims(self) -> ClaimTheory:
         """Return the whole theory."""
@@ -105,6 +110,10 @@ class Draft:
     def of(self, *names: str) -> list[Symbol]:
         """Return letters by their names; one with an index is declared."""
         return [self.theory.symbols.get(name) or self._indexed(name) for name in names]
+
+    def scalar(self, *names: str) -> bool:
+        """Tell whether a letter is used where all dimensions are 1: there, detectability is C ≠ 0 or a stable A."""
+        return SCALAR in self.used and self.has(*names)
 
     def times(self) -> list[str]:
         """Return the times at which letters are used, t first."""

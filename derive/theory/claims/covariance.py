@@ -32,7 +32,9 @@ def outline() -> Outline:
     names |= {k: s[k] for k in BLOCKS if k != "X_vv_inf"}
     names |= {f"{k}()": s[k].at("t", "τ") for k in ("Phi_ss", "Phi_sv", "Phi_vv")}
     names |= {"X_vv(∞)": s["X_vv_inf"], "X_vv^∞": s["X_vv_inf"], "X_vv,∞": s["X_vv_inf"]}
-    return Outline(KEY, t.title, t, names, declare, frozenset({"A", "B", "N", "X", "Phi", *SIGNALS, *BLOCKS}))
+    return Outline(
+        KEY, t.title, t, names, declare, frozenset({"A", "B", "N", "X", "Phi", *SIGNALS, *BLOCKS}), frozenset("nq")
+    )
 
 
 def declare(d: Draft) -> None:

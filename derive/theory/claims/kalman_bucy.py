@@ -43,7 +43,7 @@ def outline() -> Outline:
     _signals(t)
     _spectra(t)
     usual = {"A", "C", "W", "V", "P", "K", "@τ", "@t0", *ON_THE_WAY, "Sigma", "Phi_y(s)", "Phi_y(ω)"}
-    return Outline(KEY, t.title, t, _names(t), declare, frozenset(usual))
+    return Outline(KEY, t.title, t, _names(t), declare, frozenset(usual), frozenset("ml"))
 
 
 def _signals(t: Theory) -> None:
@@ -111,7 +111,7 @@ def declare(d: Draft) -> None:
     cross = d.has("N")
     _noise(d, cross)
     spectral = d.has(*(f"Phi_{k}({x})" for k in "yz" for x in ("s", "ω")))
-    if d.has("P", "K", "Sigma"):
+    if d.has("P", "K", "Sigma") or d.scalar(*"AC"):
         _steady(d, cross)
     if d.has(*ON_THE_WAY):
         _transient(d, cross)
@@ -159,8 +159,8 @@ def _steady(d: Draft, cross: bool) -> None:
 
 def _transient(d: Draft, cross: bool) -> None:
     A, C, W, V, N, P, K = d.of("A", "C", "W", "V", "N", "P(t)", "K(t)")
-    d.assume("P(t) >= 0", P, "⪰", text="a covariance")
     d.assume("P(0) > 0", P.at("t0"), "≻", text="the initial state is uncertain in every direction")
+    d.assume("P(t) > 0", P, "≻", text="the closed loop moves what was uncertain at first, and noise adds to it")
     right = rate(A, C, W, V, P, N if cross else None)
     by = ("observer", "Riccati equation") if cross else (LECTURE, "P(t)")
     d.define("P(t)", Dot(P), right, by=by)

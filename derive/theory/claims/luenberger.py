@@ -47,7 +47,7 @@ def outline() -> Outline:
     t.scalar("z", meaning="a complex number")
     _families(t)
     usual = {"A", "B", "C", "Q", "R", *STEADY, "P_{k-1}", "P_k", "L_k", *(f"{s}_k" for s in SIGNALS)}
-    return Outline(KEY, t.title, t, _names(t), declare, frozenset(usual))
+    return Outline(KEY, t.title, t, _names(t), declare, frozenset(usual), frozenset("nl"))
 
 
 def _families(t: Theory) -> None:

@@ -32,18 +32,18 @@ def outline() -> Outline:
     names |= {"hat x": t.symbols["o"]}
     names |= {f"{k}()": t.symbols[k].at("t", "τ") for k in ("Phi", "R_xixi", *CORRELATIONS)}
     usual = frozenset({*plain, *CORRELATIONS, "P_e", "W", "N", "R_e", "sigma2", "R_xixi"})
-    return Outline(KEY, t.title, t, names, declare, usual)
+    return Outline(KEY, t.title, t, names, declare, usual, frozenset("nldr"))
 
 
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
     covariance = d.has("P_e", "L")
     intensities = covariance or d.has(*INTENSITIES, "W", "N", "R_e", "sigma2", "R_xixi", *CORRELATIONS)
-    if d.has(*CLOSED, *SIGNALS, "sigma2", "P_e", "R_xixi"):
+    if covariance or d.has(*CLOSED, *SIGNALS, "sigma2", "R_xixi"):
         d.given(theory(), *CLOSED)
     if intensities:
         _intensities(d)
-    if d.has("sigma2", "P_e", "R_xixi"):
+    if covariance or d.has("sigma2", "R_xixi"):
         d.given(theory(), "sigma2")
         (sigma,) = d.of("sigma2")
         d.assume("sigma2 >= 0", sigma, "⪰", text="an intensity")
@@ -68,11 +68,10 @@ def _intensities(d: Draft) -> None:
 def _covariance(d: Draft) -> None:
     """Declare the Lyapunov equation for any gain, and the optimal gain."""
     C, L, N, R_e, P, A_e, sigma = d.of("C", "L", "N", "R_e", "P_e", "A_e", "sigma2")
-    if d.has("P_e"):
-        d.assume("P_e >= 0", P, "⪰", text="a covariance")
-        rate = A_e * P + P * A_e.T + sigma
-        d.assume("Lyapunov equation", Dot(P), "=", rate, by=(LECTURE, "Lyapunov equation"))
-        d.assume("optimal gain", L, "=", (P * C.T + N) * R_e.inv, by=(LECTURE, "L*"), optimal=True)
+    d.assume("P_e >= 0", P, "⪰", text="a covariance")
+    rate = A_e * P + P * A_e.T + sigma
+    d.assume("Lyapunov equation", Dot(P), "=", rate, by=(LECTURE, "Lyapunov equation"))
+    d.assume("optimal gain", L, "=", (P * C.T + N) * R_e.inv, by=(LECTURE, "L*"), optimal=True)
 
 
 def _dynamics(d: Draft) -> None:

@@ -32,14 +32,14 @@ def outline() -> Outline:
     s = t.symbols
     names: dict[str, Term] = {k: s[k] for k in (*"ABQRSK", "x", "u")}
     names |= {"S_∞": s["S"], "K_∞": s["K"], "S()": s["S(t)"], "K()": s["K(t)"]}
-    return Outline(KEY, t.title, t, names, declare, frozenset({*"ABQRSK", *ON_THE_WAY, "x", "u"}))
+    return Outline(KEY, t.title, t, names, declare, frozenset({*"ABQRSK", *ON_THE_WAY, "x", "u"}), frozenset("np"))
 
 
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
     costs(d)
     A, B, Q, R = d.of(*"ABQR")
-    if d.has("S", "K"):
+    if d.has("S", "K") or d.scalar(*"AB"):
         S, K = d.of("S", "K")
         d.assume("S >= 0", S, "⪰", text="a cost")
         d.define("steady cost", cost_rate(A, B, S, Q, R), Zero("n", "n"))
@@ -53,3 +53,6 @@ def declare(d: Draft) -> None:
     if d.has("x", "u"):
         x, u = d.of("x", "u")
         d.define("plant", Dot(x), A * x + B * u)
+        if d.has("K", "K(t)"):
+            gain = d.of("K(t)" if d.has("K(t)") else "K")[0]
+            d.assume("u = -K x", u, "=", -(gain * x), text="the optimal input", optimal=True)

@@ -1,6 +1,7 @@
 """What claims about the regulator in discrete time may use: S, K steady, S_k, K_k backwards from the horizon.
 
-The input is u = -K x; S is the cost to go. S_{k-1} follows from S_k, and K_{k-1} steers from x_{k-1} to x_k.
+The input is u = -K x, or u_k = -K_k x_k where a claim writes gains with an index; S is the cost to go. S_{k-1} follows
+from S_k, and K_{k-1} steers from x_{k-1} to x_k.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ def outline() -> Outline:
     names: dict[str, Term] = {k: s[k] for k in (*"ABQRSK", "S_#", "K_#", "x_#", "u_#")}
     names |= {"S_∞": s["S"], "K_∞": s["K"]}
     usual = frozenset({*"ABQRSK", "S_{k-1}", "S_k", "K_{k-1}", "x_{k-1}", "x_k", "u_{k-1}"})
-    return Outline(KEY, t.title, t, names, declare, usual)
+    return Outline(KEY, t.title, t, names, declare, usual, frozenset("np"))
 
 
 def matrices(t: Theory) -> None:
@@ -54,7 +55,7 @@ def costs(d: Draft) -> None:
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
     costs(d)
-    if d.has("S", "K"):
+    if d.has("S", "K") or d.scalar(*"AB"):
         _steady(d)
     for letter, numbers in d.indices().items():
         _horizon(d, letter, numbers)
@@ -74,7 +75,7 @@ def _steady(d: Draft) -> None:
 def _horizon(d: Draft, letter: str, numbers: dict[int, set[str]]) -> None:
     """Declare cost to go, gain and plant from step to step; a lone gain or cost has the step after it."""
     first, last = min(numbers), max(numbers)
-    if "K" in numbers[last] or (first == last and d.has("Q")):
+    if numbers[last] & {"K", "u"} or (first == last and d.has("Q")):
         last += 1
     indices = [index_at(letter, number) for number in range(first, last + 1)]
     A, B, Q, R = d.of(*"ABQR")
@@ -85,6 +86,12 @@ def _horizon(d: Draft, letter: str, numbers: dict[int, set[str]]) -> None:
         d.assume(name, weight(B, S, R), "≻", by=(LECTURE, "input weight"))
         d.inverse(f"weight_{index}^-1", weight(B, S, R), "p", name)
     plant = any(stems & {"x", "u"} for stems in numbers.values())
+    varies = any("K" in stems for stems in numbers.values())
+    for now in indices if plant and (varies or d.has("K")) else ():
+        if varies and now == indices[-1]:
+            continue  # its gain depends on the cost after the last index
+        u, x = d.at("u", now), d.at("x", now)
+        d.assume(f"{u.name} = -K x", u, "=", -((d.at("K", now) if varies else d.of("K")[0]) * x), optimal=True)
     for now, later in pairwise(indices):
         S, earlier, K = d.at("S", later), d.at("S", now), d.at("K", now)
         d.define(f"cost to go at {now}", earlier, cost_to_go(A, B, S, Q, R))

@@ -151,3 +151,15 @@ def test_the_root_of_a_matrix_and_its_extreme_eigenvalues():
 def test_an_assumption_without_a_relation_is_an_error():
     with pytest.raises(NotUnderstood, match="expected an equation or an inequality"):
         meant(DT, "P = Q", ["P C^T"])
+
+
+@pytest.mark.parametrize("given", [["m = 1", "l = 1"], ["l = m = 1"]])
+def test_where_state_and_output_are_1_everything_commutes(given: list[str]):
+    found = meant(KB, "P C = C P", given)
+    assert found.scalar
+    assert found.theory.conditions == ()
+
+
+def test_where_all_dimensions_are_1_detectability_is_in_force():
+    assert "A - K C Hurwitz" in meant(KB, "A < 0", ["C = 0"], scalar=True).theory.theory.declared
+    assert "A - K C Hurwitz" not in meant(KB, "A C^T = C^T").theory.theory.declared

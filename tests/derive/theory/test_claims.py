@@ -48,11 +48,11 @@ HYPOTHESES = {
         "joint covariance at t0", "x(t0) and n(τ)", "Phi(τ,τ)", "Phi(τ1,τ1)", "Phi(τ2,τ2)",
     },
     "kalman-bucy": {
-        "P >= 0", "P(t) >= 0", "P(0) > 0", "joint noise", "w and v at t, t", "w and v at t0, t0", "w and v at τ, τ",
+        "P >= 0", "P(t) > 0", "P(0) > 0", "joint noise", "w and v at t, t", "w and v at t0, t0", "w and v at τ, τ",
     },
     "luenberger-dt": {"P_k >= 0"},
-    "lqr-ct": {"S >= 0", "S(t) >= 0"},
-    "lqr-dt": {"S_{k-1} >= 0"},
+    "lqr-ct": {"S >= 0", "S(t) >= 0", "u = -K x"},
+    "lqr-dt": {"S_{k-1} >= 0", "u_{k-1} = -K x"},
 }  # fmt: skip
 
 
