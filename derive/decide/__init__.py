@@ -29,8 +29,12 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
     Raises:
         InputError: assumptions that contradict the theory.
     """
-    from derive.decide.kinds import is_matrix_claim
+    from derive.decide.kinds import is_analytic, is_matrix_claim
 
+    if is_analytic(statement):
+        from derive.decide.spectra.decision import decide_spectra
+
+        return decide_spectra(statement, seconds)
     if statement.scalar:
         from derive.scalar.decision import decide_scalar
 

@@ -133,6 +133,9 @@ def replay_claim(data: Any) -> None:
     if "proof" in item:
         _replay_numbers(item)
         return
+    if "lecture" in item:
+        _replay_theorems(item)
+        return
     missing = sorted(set(FIRST) - set(item))
     if missing:
         raise InputError(f"certificate: expected the keys {', '.join(FIRST)}, got none of the name {missing[0]}")
@@ -170,6 +173,16 @@ def _replay_numbers(item: Mapping[str, Any]) -> None:
         raise InputError("certificate: expected the keys latex, assume, scalar and theory, got fewer")
     statement, _ = _statement(item)
     replay_numbers(item, statement)
+
+
+def _replay_theorems(item: Mapping[str, Any]) -> None:
+    """Replay the certificate of a claim that the theorems of a lecture show."""
+    from derive.decide.spectra.decision import replay_theorems
+
+    if not {"latex", "assume", "scalar", "theory"} <= set(item):
+        raise InputError("certificate: expected the keys latex, assume, scalar and theory, got fewer")
+    statement, _ = _statement(item)
+    replay_theorems(item, statement)
 
 
 def _statement(item: Mapping[str, Any]) -> tuple[Statement, Claim]:

@@ -279,7 +279,7 @@ def _sum(parts: tuple[Term, ...], addends: Sequence[Term]) -> Iterator[Edit]:
         body = part.body if isinstance(part, Neg) else part
         flipped = body if isinstance(part, Neg) else Neg(part)
         sign = "plus" if isinstance(part, Neg) else "minus"
-        yield Edit(Sum(_changed(parts, i, flipped)), ("the other sign of ", body), 2, sign, body)
+        yield Edit(Sum(_changed(parts, i, flipped)), ("the other sign of ", body), 2 if i else 3, sign, body)
         yield Edit(rest[0] if len(rest) == 1 else Sum(rest), ("without ", body), 4, "drop", body)
     for addend in addends:
         if shape_of(addend) == shape:

@@ -89,12 +89,17 @@ def _with_lemma(item: Lemma, reading: Reading) -> Reading:
 
 
 def _with_inverse(item: Introduced, reading: Reading) -> Reading:
-    """Adopt M X = I, X M = I, and what X is where that is known; X' = -X M' X for its time derivative."""
+    """Adopt M X = I, X M = I, and what X is where that is known; dX/dt = -X dM/dt X."""
+    _check_reason(item, reading.context, reading.inverses)
+    return suppose(item, reading)
+
+
+def suppose(item: Introduced, reading: Reading) -> Reading:
+    """Take up an inverse whatever its reason, for instances where it exists; nothing is proved from it."""
     context, of, name = reading.context, item.of, item.letter
-    if name in context.alphabet.letters or name in context.alphabet.scalars or of.rows != of.cols:
-        raise Rejected(f"{name}: the letter is taken, or its matrix is not square")
+    if name in context.alphabet.letters or name in context.alphabet.scalars:
+        raise Rejected(f"{name}: the letter is taken")
     context.alphabet.check(of)
-    _check_reason(item, context, reading.inverses)
     symmetric = context.alphabet.transpose(of) == of
     letters = {**context.alphabet.letters, name: Letter(name, of.rows, of.cols, symmetric)}
     x = Poly({((), (name,)): 1}, of.rows, of.cols)
@@ -129,6 +134,8 @@ def _with_rate(context: Context, of: Poly, x: Poly, name: str) -> Context:
 
 def _check_reason(item: Introduced, context: Context, inverses: Mapping[Poly, str]) -> None:
     of, by = item.of, item.by
+    if of.rows != of.cols:
+        raise Rejected(f"{item.letter}: its matrix is not square")
     given = [bool(item.because), by is not None, bool(item.generic)]
     if sum(given) != 1:
         raise Rejected(f"{item.letter}: one reason is needed why the inverse exists")
@@ -168,6 +175,15 @@ def generic(of: Poly, variable: str, context: Context, inverses: Mapping[Poly, s
     lead = Poly({(_without(m, variable), w): c for (m, w), c in top.items()}, of.rows, of.cols)
     known = {fact.matrix for fact in context.facts.values() if fact.kind in ("pd", "invertible")}
     return set(lead.terms) == {((), ())} or ((lead,),) in known or ((-lead,),) in known
+
+
+def moves(poly: Poly, context: Context, inverses: Mapping[Poly, str]) -> bool:
+    """Tell whether a matrix is a function of a generic point."""
+    for variable in (s for s in GENERIC if s in context.alphabet.scalars):
+        proper = {name for p, name in inverses.items() if variable in _scalars(p)}
+        if variable in _scalars(poly) or _letters(poly) & (proper | _moving(variable, proper, context, inverses)):
+            return True
+    return False
 
 
 def _moving(variable: str, proper: set[str], context: Context, inverses: Mapping[Poly, str]) -> set[str]:

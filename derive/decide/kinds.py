@@ -5,8 +5,9 @@ from __future__ import annotations
 from fractions import Fraction
 
 from derive.decide.parts import is_trace
-from derive.functions import is_scalar
+from derive.functions import Definite, Limit, is_scalar
 from derive.interpret.statement import Statement
+from derive.spectral import Det, ImaginaryPart, RealPart, Total
 from derive.terms import (
     Block,
     Delta,
@@ -30,12 +31,20 @@ from derive.terms import (
     walk,
 )
 
-__all__ = ["is_matrix_claim"]
+__all__ = ["is_analytic", "is_matrix_claim"]
 
 MATRIX: tuple[type[Term], ...] = (
     Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace,
     Gradient, Block, Image,
 )  # fmt: skip
+ANALYTIC = (Definite, Limit, Total, Det, RealPart, ImaginaryPart)
+EXTREMES = ("λmin(", "λmax(")
+
+
+def is_analytic(statement: Statement) -> bool:
+    """Tell whether a statement has integrals over frequency, limits, determinants or eigenvalues."""
+    nodes = (n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side))
+    return any(isinstance(n, ANALYTIC) or (isinstance(n, Symbol) and n.name[:5] in EXTREMES) for n in nodes)
 
 
 def is_matrix_claim(statement: Statement) -> bool:

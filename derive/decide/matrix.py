@@ -48,9 +48,8 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
     except Undefined as found:
         return _undefined(found, statement)
     except Unjustified:
-        return _undecided(
-            statement, "no reason was found why an inverse in it exists, and no instance where it does not"
-        )
+        note = "no reason was found why an inverse in it exists, and no instance where it does not"
+        return _refute_where_defined(statement, work.left) or _undecided(statement, note)
     except (Rejected, AssertionError) as error:
         return _undecided(statement, str(error))
     if not _satisfiable(statement, polys):
@@ -61,6 +60,29 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
     if proof is None:
         return _undecided(statement, "neither a proof nor a counterexample was found")
     return _proved(statement, work, proof, polys, explain)
+
+
+def _refute_where_defined(statement: Statement, seconds: float) -> Answer | None:
+    """Refute a statement at an instance where its inverses exist, though no reason is known why they always do."""
+    work = Workspace(statement.theory, time.monotonic() + seconds, statement.equations)
+    try:
+        _justify_given(work)
+        for equation in statement.equations:
+            for side in (equation.lhs, equation.rhs):
+                justify(side, work, refuting=False, supposing=True)
+        found = [_refute(oriented(e, work.reading), work) for e in statement.equations]
+    except (Rejected, Undefined, Unjustified):
+        return None
+    for i, counterexample in enumerate(found):
+        if counterexample:
+            return _refuted(statement, i, counterexample)
+    return None
+
+
+def _refuted(statement: Statement, number: int, found: Counterexample) -> Answer:
+    """Return the answer when one of the relations fails."""
+    notes = (f"its relation number {number + 1} fails",) if len(statement.equations) > 1 else ()
+    return Answer(Verdict.refuted, "exact instance", assumed=statement.assumed, counterexample=found, notes=notes)
 
 
 def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
@@ -111,11 +133,7 @@ def _prove(statement: Statement, work: Workspace) -> tuple[list[Part] | None, An
             continue
         found = _refute(plain, work)
         if found is not None:
-            many = len(statement.equations) > 1
-            notes = (f"its relation number {i + 1} fails",) if many else ()
-            return None, Answer(
-                Verdict.refuted, "exact instance", assumed=statement.assumed, counterexample=found, notes=notes
-            )
+            return None, _refuted(statement, i, found)
         open_ = True
     return (None if open_ else proof), None
 

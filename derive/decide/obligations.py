@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derive.claim import Counterexample
-from derive.decide.ground import GENERIC, Introduced, generic, ratio
+from derive.decide.ground import GENERIC, Introduced, generic, moves, ratio
 from derive.decide.order import prove_order
 from derive.decide.workspace import Workspace
 from derive.kernel import Poly, Rejected, identity
@@ -38,8 +38,14 @@ class Unjustified(Exception):  # noqa: N818 - what was found about a claim
     body: Term
 
 
-def justify(term: Term, work: Workspace, refuting: bool = True) -> None:
+def justify(term: Term, work: Workspace, refuting: bool = True, supposing: bool = False) -> None:
     """Establish every inverse of a term, the inner ones first.
+
+    Args:
+        term: one side of a claim.
+        work: where they are established.
+        refuting: look for an instance where one does not exist.
+        supposing: suppose one for which nothing was found, to refute the claim where it exists.
 
     Raises:
         Undefined: one of them does not exist everywhere.
@@ -47,7 +53,7 @@ def justify(term: Term, work: Workspace, refuting: bool = True) -> None:
         Rejected: the term has no meaning.
     """
     for child in term.children():
-        justify(child, work, refuting)
+        justify(child, work, refuting, supposing)
     if not isinstance(term, Inverse):
         return
     grid = lower(term.body, work.reading)
@@ -57,9 +63,11 @@ def justify(term: Term, work: Workspace, refuting: bool = True) -> None:
     if work.inverse(poly) is not None or _by_factors(term.body, work) or invert(poly, work) is not None:
         return
     found = work.refute(poly, relation="invertible", seconds=SECONDS) if refuting else None
-    if found and not set(GENERIC) & set(found.scalars):  # a generic point may be moved
+    if found and not moves(poly, work.reading.context, work.reading.inverses):  # a generic point avoids it
         raise Undefined(term.body, found)
-    raise Unjustified(term.body)
+    if not supposing:
+        raise Unjustified(term.body)
+    work.suppose(poly)
 
 
 def invert(poly: Poly, work: Workspace, depth: int = 0) -> Poly | None:

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from derive.claim import Counterexample
 from derive.context import names_of
-from derive.decide.ground import Introduced, Item, Lemma, accept, directions
+from derive.decide.ground import Introduced, Item, Lemma, accept, directions, suppose
 from derive.kernel import Certificate, Letter, Poly, Rejected, Term, identity, replay
 from derive.matrix.bearing import bearing
 from derive.matrix.hypotheses import Hypotheses
@@ -111,6 +111,11 @@ class Workspace:
         """Accept lemmas or inverses, and keep them for the certificate."""
         self.reading = accept(items, self.reading, self.theory.theory)
         self.items += items
+
+    def suppose(self, poly: Poly) -> None:
+        """Take up an inverse without reason, to look for an instance that refutes; no proof from it is accepted."""
+        self.reading = suppose(Introduced(self.fresh(), poly), self.reading)
+        self.items.append(Introduced(self.fresh(), poly))
 
     def fresh(self) -> str:
         """Return a name for the next inverse."""

@@ -23,7 +23,7 @@ from tests.derive.decide.formulas import ORDER, SOURCES, TEXTBOOK
 from tests.derive.decide.reading import statement
 from tests.derive.theory.mutants import mutants
 
-EACH = 8
+EACH = 12
 LEAST = 300
 FORMULAS = SOURCES + TEXTBOOK + ORDER
 
