@@ -18,6 +18,7 @@ import pytest
 from derive.context import Theory
 from derive.derivation import Proof, Step, verify
 from derive.document import lecture_to_json
+from derive.errors import InputError
 from derive.functions import Abs, Definite, Infinity, Limit, Log, Power, Quotient, Rate, Root, Start, value
 from derive.induction import Induction, claim_of, following
 from derive.kernel import ANY, Certificate, Poly, Rejected
@@ -29,6 +30,7 @@ from derive.terms import Equation, Glyph, Number, Symbol, Term, Zero
 from derive.theory import lecture
 from derive.theory.builder import NotDerived
 from derive.theory.scalar_builder import ScalarBuilder
+from derive.wellformed import check_work
 
 ZERO, ONE, TWO, NONE = Zero("", ""), Number(Fraction(1)), Number(Fraction(2)), Number(Fraction(0))
 UNIT = Fraction(1)
@@ -756,6 +758,15 @@ def test_a_tampered_induction_of_a_sign_is_rejected(file, name):
         lambda s: s.update(rule="sign"),
     ):
         assert changed(file, name, change)[:1] == [name]
+
+
+def test_a_certificate_on_file_is_of_bounded_size():
+    small = Sign(Poly({}, ANY, ANY), "≥", (), ())
+    large = replace(small, products=(SignProduct(UNIT, ("k >= 0",) * 2_000),))
+    check_work(Proof(induction=Induction(small, small)))
+    for signs in (Induction(small, large), Induction(large, small)):
+        with pytest.raises(InputError, match="factors"):
+            check_work(Proof(induction=signs))
 
 
 def test_a_file_cannot_name_what_is_supposed(file):
