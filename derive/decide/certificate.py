@@ -16,8 +16,8 @@ from typing import Any
 from derive.claim import Claim
 from derive.decide.ground import Introduced, Item, Lemma, accept, symbols
 from derive.decide.hypotheses import addends_in, addends_of
-from derive.decide.order import TraceOrder, TraceProduct
 from derive.decide.parts import Part, replay_part
+from derive.decide.traces import TraceOrder, TraceProduct
 from derive.decide.workspace import proof_reading
 from derive.derivation import Proof
 from derive.errors import InputError

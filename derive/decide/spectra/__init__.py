@@ -1,0 +1,1 @@
+"""Claims of the frequency domain: integrals of logarithms, determinants, eigenvalues, limits."""
