@@ -15,15 +15,15 @@ import numpy as np
 from flint import arb, arb_mat
 from numpy.typing import NDArray
 
-from derive.numeric.balls import floats, identity, middle, norm, positive_definite, working_bits
+from derive.numeric.balls import identity, middle, norm, positive_definite, working_bits
 from derive.numeric.newton import Equation, lyapunov_in_balls, refined
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import solve_riccati
 from lmi.certificate import Bounds, Certificate, ExactPlant, exact_plant, verify
 from lmi.certificate_arithmetic import Exact
-from lmi.certification_boundary import without_boundary
 from lmi.certification_frame import Frame, Grid, binary_logarithm, sizes, unit_variances
 from lmi.certification_instability import instability, is_stable
+from lmi.certification_strong import strong_solution
 
 __all__ = ["Certified", "NotCertifiedError", "UnstableGainError", "certified"]
 
@@ -35,8 +35,8 @@ GAP_BITS = 100
 PRECISIONS = (320, 640, 1280)
 """Working precisions in bits, tried in this order."""
 
-GAIN_BITS = 192
-"""Bits of a gain for which doubles are too coarse."""
+RATE_BITS = 100
+"""The boundary modes of a strong solution are moved inside by 2^-100."""
 
 LARGEST = 200
 """States up to which a certificate is made."""
@@ -128,19 +128,21 @@ def _attempts(plant: Plant, fixed: ExactPlant, gain: Matrix | None) -> Iterator[
     solution = solve_riccati(plant)
     if solution.status == "stabilising":
         yield lambda: _from_solution(plant, fixed, given, solution.P)
+    else:
+        for bits in PRECISIONS:
+            yield lambda bits=bits: _from_strong(plant, fixed, given, bits)
     for bits in PRECISIONS:
         yield lambda bits=bits: _from_gain(plant, fixed, given, bits)
 
 
 def _without_noise(plant: Plant, fixed: ExactPlant) -> list[Certificate]:
     """Propose P* = 0 and L = 0: what noise leaves alone, a stable plant forgets."""
-    n = plant.n
     with working_bits(PRECISIONS[0]):
         frame = Frame.of(plant, Equation.of(plant))
         D, rate = _witness(frame.A.mid(), frame.equation)
         X = Grid.of(frame.equation.scaling).covariance(D, _finer(frame.A, rate))
-    zero, no_gain = Exact(((0,) * n,) * n), Exact(((0,) * plant.l,) * n)
-    return [Certificate(fixed, zero, zero, X, no_gain)]
+    zero = _zero(fixed)
+    return [Certificate(fixed, zero, zero, X, Exact(((0,) * plant.l,) * plant.n))]
 
 
 def _from_solution(plant: Plant, fixed: ExactPlant, given: Exact | None, P: Matrix) -> list[Certificate]:
@@ -154,11 +156,28 @@ def _from_solution(plant: Plant, fixed: ExactPlant, given: Exact | None, P: Matr
         return [Certificate(fixed, _lower(equation, grid, centre), P_up, X, L)]
 
 
+def _from_strong(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int) -> list[Certificate]:
+    """Propose bounds of a strong solution: exact on the boundary modes from below, moved inside from above."""
+    with working_bits(bits):
+        strong = strong_solution(fixed)
+        if strong is None:
+            raise NotCertifiedError("modes near the boundary that are not exactly on it, or cannot be split off")
+        equation = Equation.of(plant)
+        equation, P = unit_variances(equation, strong.nearby(equation, arb(2) ** -RATE_BITS))
+        frame, grid = Frame.of(plant, equation), Grid.of(equation.scaling)
+        L = given or grid.gain(frame.gain(P), bits // 2)
+        P_up, X = _upper(frame, grid, L)
+        below = [_zero(fixed)]
+        if strong.equation is not None and strong.Pi is not None:
+            Pi = _lower(strong.equation, Grid.of(strong.equation.scaling), strong.Pi)
+            below = [strong.reduced.lifted(Pi), *below]
+    return [Certificate(fixed, P_lo, P_up, X, L) for P_lo in below]
+
+
 def _from_gain(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int) -> list[Certificate]:
     """Let Kleinman's iteration fall from the covariance of a stabilising gain.
 
-    Where it does not settle, modes are on the boundary: the last iterate still bounds P* from above, and from below
-    there are the smaller plant without them, and 0.
+    Where it does not settle, its last iterate still bounds P* from above, and 0 bounds it from below.
     """
     with working_bits(bits):
         frame = Frame.of(plant, Equation.of(plant))
@@ -166,10 +185,14 @@ def _from_gain(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int) 
         P, settled = _kleinman(frame.equation, _covariance(frame, start))
         equation, P = unit_variances(frame.equation, P)
         frame, grid = Frame.of(plant, equation), Grid.of(equation.scaling)
-        L = given or grid.gain(frame.gain(P), GAIN_BITS)
+        L = given or grid.gain(frame.gain(P), bits // 2)
         P_up, X = _upper(frame, grid, L)
-        below = [_lower(equation, grid, P)] if settled else _below_boundary(fixed)
-    return [Certificate(fixed, P_lo, P_up, X, L) for P_lo in below]
+        P_lo = _lower(equation, grid, P) if settled else _zero(fixed)
+    return [Certificate(fixed, P_lo, P_up, X, L)]
+
+
+def _zero(fixed: ExactPlant) -> Exact:
+    return Exact(((0,) * fixed.n,) * fixed.n)
 
 
 def _stabilising_gain(plant: Plant) -> Matrix:
@@ -202,24 +225,6 @@ def _kleinman(equation: Equation, P: arb_mat) -> tuple[arb_mat, bool]:
         if norm(step) <= norm(P) * arb(2) ** -(2 * GAP_BITS):
             return P, True
     return P, False
-
-
-def _below_boundary(fixed: ExactPlant) -> list[Exact]:
-    """Return lower bounds of a P* that vanishes on boundary modes, the best first."""
-    zero = Exact(((0,) * fixed.n,) * fixed.n)
-    reduced = without_boundary(fixed)
-    if reduced is None or reduced.U.ncols() == 0:
-        return [zero]
-    m = reduced.U.ncols()
-    F, C, q, V = (arb_mat(X) for X in (reduced.F, reduced.C, reduced.q, reduced.V))
-    equation = Equation(F, C, q, V, fixed.time, np.ones(m))
-    W, R, N = floats(q), floats(V), np.zeros((m, fixed.l))
-    small = Plant(time=fixed.time, A=floats(F), C=floats(C), W=W, V=R, N=N, M=np.eye(m))
-    solution = solve_riccati(small)
-    if solution.status != "stabilising":
-        return [zero]
-    equation, P = unit_variances(equation, refined(equation, equation.scaled(solution.P), in_balls=True))
-    return [reduced.lifted(_lower(equation, Grid.of(equation.scaling), P)), zero]
 
 
 def _lower(equation: Equation, grid: Grid, P: arb_mat) -> Exact:

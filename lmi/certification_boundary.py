@@ -17,6 +17,9 @@ from lmi.certificate_arithmetic import Exact
 
 __all__ = ["Reduced", "without_boundary"]
 
+LARGEST = 60
+"""States up to which polynomials are factored in seconds."""
+
 CLOSE = 1e-15
 """Distance of a computed root from the boundary, relative to 1 + its size, below which an irreducible factor that is
 its own mirror image is taken to have its roots there."""
@@ -27,18 +30,25 @@ class Reduced:
     """A plant without its unexcited boundary modes, and without its cross term.
 
     Attributes:
-        U: basis (n, m) of the states that are kept, P = U Pi U'.
+        Z: basis (n, n - m) of the left-invariant subspace of the modes that are removed, Z'F = T Z'.
+        U: basis (n, m) of the states that are kept, Z'U = 0, P = U Pi U'.
         F: state matrix (m, m).
         C: output matrix (l, m).
         q: process noise (m, m).
         V: measurement noise (l, l).
     """
 
+    Z: fmpq_mat
     U: fmpq_mat
     F: fmpq_mat
     C: fmpq_mat
     q: fmpq_mat
     V: fmpq_mat
+
+    @property
+    def m(self) -> int:
+        """Number of states that are kept."""
+        return self.U.ncols()
 
     def lifted(self, Pi: Exact) -> Exact:
         """Return U Pi U'."""
@@ -47,7 +57,9 @@ class Reduced:
 
 
 def without_boundary(plant: ExactPlant) -> Reduced | None:
-    """Remove the unexcited boundary modes, found exactly; None when there are none."""
+    """Remove the unexcited boundary modes, found exactly; None when there are none, or the plant is large."""
+    if plant.n > LARGEST:
+        return None
     A, C, W, V, N = (_rational(X) for X in (plant.A, plant.C, plant.W, plant.V, plant.N))
     gain = V.solve(N.transpose()).transpose()
     F, q = A - gain * C, W - gain * N.transpose()
@@ -59,13 +71,13 @@ def without_boundary(plant: ExactPlant) -> Reduced | None:
     Y = _kernel(_evaluated(annihilator, T))
     if Y is None:
         return None
-    U = _kernel((Z * Y).transpose())
+    Z = Z * Y
+    U = _kernel(Z.transpose())
     if U is None:
         nothing = fmpq_mat(0, 0)
-        return Reduced(fmpq_mat(plant.n, 0), nothing, fmpq_mat(plant.l, 0), nothing, V)
-    gram, Ut = U.transpose() * U, U.transpose()
-    left = gram.solve(Ut)
-    return Reduced(U, left * F * U, C * U, left * q * left.transpose(), V)
+        return Reduced(Z, fmpq_mat(plant.n, 0), nothing, fmpq_mat(plant.l, 0), nothing, V)
+    left = (U.transpose() * U).solve(U.transpose())
+    return Reduced(Z, U, left * F * U, C * U, left * q * left.transpose(), V)
 
 
 def _unexcited(F: fmpq_mat, q: fmpq_mat) -> fmpq_mat | None:
@@ -86,9 +98,17 @@ def _boundary_factor(polynomial: fmpq_poly, continuous: bool) -> fmpq_poly:
     """Return the product of the factors of a polynomial whose roots are on the boundary."""
     product = fmpq_poly([1])
     for factor, power in polynomial.factor()[1]:
-        if all(_on_boundary(complex(root), continuous) for root, _ in cast(Any, factor.numer().complex_roots())):
+        roots = cast(Any, factor.numer().complex_roots())
+        if _mirrored(factor, continuous) and all(_on_boundary(complex(root), continuous) for root, _ in roots):
             product *= factor**power
     return product
+
+
+def _mirrored(factor: fmpq_poly, continuous: bool) -> bool:
+    """Tell whether the mirror image of each root in the boundary is a root: p(-s) = +-p(s), z^n p(1/z) = +-p(z)."""
+    coefficients = factor.coeffs()
+    image = [(-1) ** k * c for k, c in enumerate(coefficients)] if continuous else coefficients[::-1]
+    return image in (coefficients, [-c for c in coefficients])
 
 
 def _on_boundary(root: complex, continuous: bool) -> bool:

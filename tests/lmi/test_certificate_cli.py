@@ -106,6 +106,7 @@ MALFORMED = {
     "blank": (lambda text: edited(text, ["X", 0, 0], " 1/2"), "X[1][1]"),
     "newline": (lambda text: edited(text, ["X", 0, 0], "1/2\n"), "X[1][1]"),
     "other digits": (lambda text: edited(text, ["X", 0, 0], "١/٢"), "X[1][1]"),
+    "other digits above": (lambda text: edited(text, ["X", 0, 0], "١/2"), "X[1][1]"),
     "zero denominator": (lambda text: edited(text, ["X", 0, 0], "1/0"), "X[1][1]"),
     "negative denominator": (lambda text: edited(text, ["X", 0, 0], "1/-2"), "X[1][1]"),
     "two slashes": (lambda text: edited(text, ["X", 0, 0], "1/2/3"), "X[1][1]"),
@@ -115,6 +116,7 @@ MALFORMED = {
     "empty rows": (lambda text: edited(text, ["X"], [[], []]), "X"),
     "a row": (lambda text: edited(text, ["X"], ["1/1", "1/1"]), "X"),
     "ragged": (lambda text: edited(text, ["X", 0], ["1/1"]), "X"),
+    "ragged below": (lambda text: edited(text, ["X", 1], ["1/1"]), "X"),
     "wrong shape": (lambda text: edited(text, ["X"], [["1/1"]]), "X"),
     "gain transposed": (lambda text: edited(text, ["gain"], [["1/1", "1/1"]]), "gain"),
     "not symmetric": (lambda text: edited(text, ["X", 0, 1], "7/1"), "X"),
@@ -145,6 +147,15 @@ def test_denominators_without_a_common_one_of_reasonable_size_are_refused(data):
     values = json.loads(data)
     values["X"] = [[f"1/{3**2000}", f"1/{7**1000}"], [f"1/{7**1000}", f"1/{11**1000}"]]
     with pytest.raises(InputError, match="common denominator"):
+        certificate_from_dict(values)
+
+
+def test_more_states_than_are_taken_are_refused(data):
+    n, values = 201, json.loads(data)
+    square, column = [["0/1"] * n] * n, [["0/1"]] * n
+    values["plant"] |= {"A": square, "C": [["0/1"] * n], "W": square, "N": column, "M": square}
+    values |= {"P_lo": square, "P_up": square, "X": square, "gain": column}
+    with pytest.raises(InputError, match="at most 200 rows"):
         certificate_from_dict(values)
 
 
