@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derive.claim import Counterexample
+from derive.context import terms_of
 from derive.decide.ground import GENERIC, Introduced, generic, moves, ratio
 from derive.decide.order import prove_order
 from derive.decide.workspace import Workspace
 from derive.kernel import Poly, Rejected, identity
 from derive.terms import Inverse, Neg, Product, Term, Transpose, lower
 
-__all__ = ["Undefined", "Unjustified", "invert", "justify"]
+__all__ = ["Undefined", "Unjustified", "invert", "justify", "justify_given"]
 
 DEPTH = 3  # how often a matrix may be traced back to another one
 SECONDS = 1.0  # for the search of a singular instance
@@ -68,6 +69,16 @@ def justify(term: Term, work: Workspace, refuting: bool = True, supposing: bool 
     if not supposing:
         raise Unjustified(term.body)
     work.suppose(poly)
+
+
+def justify_given(work: Workspace) -> None:
+    """Establish the inverses in what is given; the declarations that wait for them are taken up."""
+    for name in work.waiting():
+        item = work.theory.theory.declared[name]
+        for term in terms_of(item) if name not in work.reading.adopted else ():
+            justify(term, work, refuting=False)
+    if work.waiting():
+        raise Rejected(f"{work.waiting()[0]}: no reason was found why an inverse in it exists")
 
 
 def invert(poly: Poly, work: Workspace, depth: int = 0) -> Poly | None:

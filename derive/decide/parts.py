@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from derive.decide.gradient import check_gradient
-from derive.decide.order import TraceOrder, check_trace_order
 from derive.decide.signals import check_expectation, has_expectation
+from derive.decide.traces import TraceOrder, check_trace_order
 from derive.derivation import Proof, Step, check
 from derive.kernel import Poly, Rejected
 from derive.terms import Equation, Gradient, Neg, Number, Product, Reading, Sum, Term, Trace, Zero, lower, lower_trace
