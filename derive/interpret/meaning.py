@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from derive.interpret.arithmetic import adapted, common, exponent_text
 from derive.interpret.assume import Assumptions
+from derive.interpret.given import extended
 from derive.interpret.names import derivatives, spell
+from derive.interpret.powers import exponent_text
 from derive.interpret.reader import Reader
-from derive.interpret.shapes import Misfit, NotUnderstood, Typed
+from derive.interpret.relations import compared, relations, settled
+from derive.interpret.shapes import Misfit, NotUnderstood
 from derive.interpret.statement import Statement
+from derive.interpret.times import time_of
 from derive.latex import latex
 from derive.latex import syntax as s
 from derive.terms import Equation, Symbol, Term, walk
 from derive.theory.claims.base import SCALAR, ClaimTheory
-
-ORDER = {"≥": ("⪰", "≥"), ">": ("≻", ">"), "⪰": ("⪰", "≥"), "≻": ("≻", ">")}
-TURNED = {"≤": "≥", "<": ">", "⪯": "⪰", "≺": "≻"}
-EXPECTED = "expected an equation or an inequality, as in P = A P A^T + Q or P \\succeq 0"
 
 
 def understand(
@@ -45,6 +44,7 @@ def understand(
     """
     reader = Reader(theory, scalar=scalar, notation=roles(notation or {}))
     reader.moving = _moving((display, *assume), reader)
+    reader.times = [t for n in s.walk(display) if isinstance(n, s.Applied) for a in n.arguments if (t := time_of(a))]
     given = Assumptions(reader)
     for relation in (r for d in assume for r in relations(d)):
         given.read(relation)
@@ -57,9 +57,10 @@ def understand(
             raise NotUnderstood(str(error)) from None
         raise
     equations = [settled(e, reader) for e in equations]
-    letters = _letters([*equations, *given.settled()], given.within()) | ({SCALAR} if scalar else set())
-    extended = given.extend(theory.about(letters))
-    return Statement(tuple(equations), symbols_of(equations), extended, scalar, given.names)
+    found = [(settled(e, reader), defines) for e, defines in given.found]
+    letters = _letters([*equations, *(e for e, _ in found)], _within(reader)) | ({SCALAR} if scalar else set())
+    claims, assumed = extended(theory.about(letters), found, reader)
+    return Statement(tuple(equations), symbols_of(equations), claims, scalar, assumed)
 
 
 def roles(notation: Mapping[str, str]) -> dict[str, str]:
@@ -85,66 +86,17 @@ def spelling(letter: str) -> str:
             raise NotUnderstood(f"a notation: expected a letter such as P or \\hat{{x}}_k, got {letter}")
 
 
+def _within(reader: Reader) -> list[Term]:
+    """Return what the letters for roots and extreme eigenvalues stand for."""
+    extremes = [reader.shapes.settle(term) for _, term, _ in reader.eigenvalues.values()]
+    return [*(of for _, of in reader.roots.values()), *extremes]
+
+
 def _letters(equations: Sequence[Equation], within: Sequence[Term]) -> set[str]:
     """Return the names of the letters in equations and terms, and the times at which they are used as "@τ"."""
     terms = (*(side for e in equations for side in (e.lhs, e.rhs)), *within)
     found = [n for term in terms for n in walk(term) if isinstance(n, Symbol)]
     return {n.name for n in found} | {f"@{time}" for n in found for time in n.args}
-
-
-# ------------------------------------------------------------------------------------------------ relations
-def relations(display: s.Display) -> Iterator[s.Related]:
-    """Iterate over the relations of a display."""
-    for statement in display.statements:
-        yield from _relations(statement)
-
-
-def _relations(node: s.Node) -> Iterator[s.Related]:
-    match node:
-        case s.Related():
-            yield node
-        case s.Listed(items):
-            for item in items:
-                yield from _relations(item)
-        case s.Cases(rows):
-            for value, condition in rows:
-                if condition is not None:
-                    raise NotUnderstood("a definition by cases: write each case as a formula, its condition assumed")
-                yield from _relations(value)
-        case _:
-            raise NotUnderstood(f"a formula without a relation: {EXPECTED}")
-
-
-def compared(node: s.Related, reader: Reader) -> list[Equation]:
-    """Return the equations and inequalities of a chain a = b <= c."""
-    sides = [reader.read(side) for side in node.sides]
-    return [relate(a, sign, b, reader) for a, sign, b in zip(sides, node.relations, sides[1:], strict=False)]
-
-
-def relate(lhs: Typed, sign: str, rhs: Typed, reader: Reader) -> Equation:
-    """Return one relation between two terms of the same shape, sides swapped where the page has ≤.
-
-    Raises:
-        Misfit: the shapes differ, or an order is stated between matrices that are not square.
-        NotUnderstood: a sign that is no relation between terms.
-    """
-    if sign in TURNED:
-        lhs, sign, rhs = rhs, TURNED[sign], lhs
-    shape = common([lhs, rhs], reader)
-    left, right = adapted(lhs, shape, reader), adapted(rhs, shape, reader)
-    if sign in ORDER:
-        if shape is not None and not reader.shapes.same(*shape):
-            raise Misfit(f"shapes: an order is one of square matrices; {latex(left)} is {reader.shapes.show(shape)}")
-        return Equation(left, ORDER[sign][shape is None], right)
-    if sign in ("=", ":=", "≠", "≡"):
-        return Equation(left, "≠" if sign == "≠" else "=", right)
-    raise NotUnderstood(f"{sign}: no relation that is decided; {EXPECTED}")
-
-
-def settled(equation: Equation, reader: Reader) -> Equation:
-    """Return an equation with all dimensions found."""
-    settle = reader.shapes.settle
-    return Equation(settle(equation.lhs), equation.relation, settle(equation.rhs))
 
 
 def _moving(displays: Sequence[s.Display], reader: Reader) -> frozenset[str]:

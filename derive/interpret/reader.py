@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING
 
-from derive.interpret import arithmetic, operators
+from derive.interpret import arithmetic, functions, operators, powers
 from derive.interpret.names import derivatives, look_up, spell, unknown
 from derive.interpret.shapes import NotUnderstood, Shapes, Typed
 from derive.interpret.times import difference, index_of, literal, time_of
@@ -57,7 +57,7 @@ class Reader:
 
     def call(self, function: str, arguments: list[Typed]) -> Typed:
         """Return a named function of terms that are read already."""
-        return operators.call(function, arguments, self)
+        return functions.call(function, arguments, self)
 
     # -------------------------------------------------------------------------------------------- names
     def typed(self, term: Term) -> Typed:
@@ -152,13 +152,13 @@ class Reader:
         """Read a letter at times, indices or frequencies."""
         head = node.head
         if isinstance(head, s.Transposed):
-            return arithmetic.transpose(self.applied(s.Applied(head.body, node.arguments)), head.mark, self)
+            return powers.transpose(self.applied(s.Applied(head.body, node.arguments)), head.mark, self)
         if isinstance(head, s.Inverted):
-            return arithmetic.inverse(self.applied(s.Applied(head.body, node.arguments)), self)
-        if isinstance(head, s.Raised) and arithmetic.constant(head.exponent) is not None:
-            exponent = arithmetic.constant(head.exponent)
+            return powers.inverse(self.applied(s.Applied(head.body, node.arguments)), self)
+        if isinstance(head, s.Raised) and powers.constant(head.exponent) is not None:
+            exponent = powers.constant(head.exponent)
             assert exponent is not None
-            return arithmetic.power(self.applied(s.Applied(head.body, node.arguments)), exponent, self)
+            return powers.power(self.applied(s.Applied(head.body, node.arguments)), exponent, self)
         if not isinstance(head, s.Name):
             return arithmetic.times(s.Times((head, *(s.Fenced(a) for a in node.arguments))), self)
         spelled = spell(head, self.notation)
@@ -190,7 +190,6 @@ class Reader:
         moving = self.theory.names.get(spelled + "()") or self.new.get(spelled) or look_up(spelled, self.theory)
         times = [time_of(a) for a in arguments]
         if isinstance(moving, Symbol) and moving.args and len(moving.args) == len(times) and None not in times:
-            self.times += [t for t in times if t is not None]
             return self.typed(moving.at(*(t for t in times if t is not None)))
         if len(arguments) == 1 and (index := index_of(arguments[0])):
             at = look_up(f"{spelled}_{index}", self.theory)
@@ -259,6 +258,8 @@ KINDS: Mapping[type[s.Node], str] = {
 }
 HANDLERS: Mapping[type[s.Node], Callable[..., Typed]] = {
     **arithmetic.HANDLERS,
+    **powers.HANDLERS,
+    **functions.HANDLERS,
     **operators.HANDLERS,
     s.Name: lambda node, reader: reader.name(node),
     s.Applied: lambda node, reader: reader.applied(node),
