@@ -74,6 +74,7 @@ class Work:
     deadline: float
     shown: list[str] = field(default_factory=list[str])
     moving: str = ""  # why values at one instant refute nothing
+    varying: list[str] = field(default_factory=list[str])  # letters that vary with time
 
     @classmethod
     def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
@@ -84,7 +85,10 @@ class Work:
         known = next((c for c in cases if not c.impossible), cases[0])
         instances = Several([Instances(c, ring, names) for c in cases])
         shown = _shown(statement, known)
-        return cls(statement, ring, names, known, cases, instances, deadline, shown, moving(statement))
+        symbols = statement.theory.theory.symbols
+        stems = {n: symbols.get(n.partition("@")[0]) for n in letters_of(statement)}
+        varying = [n for n, symbol in stems.items() if symbol is not None and symbol.args]
+        return cls(statement, ring, names, known, cases, instances, deadline, shown, moving(statement), varying)
 
     def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
         """Iterate over the instances that contradict the statement."""
@@ -100,13 +104,7 @@ class Work:
 
         A covariance that varies is taken positive: it starts so, and stays so.
         """
-        symbols = self.statement.theory.theory.symbols
-        varying = [
-            n
-            for n in letters_of(self.statement)
-            if n.partition("@")[0] in symbols and symbols[n.partition("@")[0]].args
-        ]
-        if self.moving or any(instance.values.get(n, 1) == 0 for n in varying):
+        if self.moving or any(instance.values.get(n, 1) == 0 for n in self.varying):
             return None
         for i, equation in enumerate(self.statement.equations):
             try:
@@ -365,7 +363,7 @@ def example(work: Work, failure: Failure) -> Counterexample:
     elif left is None or right is None or also:
         sides = _text(failure.left), _text(failure.right)
     return NumberExample(
-        sizes or {"1": 1}, {n: ((x,),) for n, x in exact.items() if n not in central},
+        sizes or {"1": 1}, {_at_start(n): ((x,),) for n, x in exact.items() if n not in central},
         () if left is None or any(sides) else ((left,),), () if right is None or any(sides) else ((right,),),
         work.statement.equations[failure.number].relation, {n: exact[n] for n in exact if n in central},
         also=also, sides=sides,

@@ -22,6 +22,7 @@ from derive.scalar.system import System
 __all__ = ["Instance", "Instances", "Several"]
 
 SIZES = (0, 1, 2, Fraction(1, 2), 3, 4, Fraction(1, 3), Fraction(3, 2), 5)  # absolute values, simplest first
+ZERO = fmpq(0)
 TRIED = 3_000  # points for the free letters, at most
 RELATION = {"nonnegative": "≥", "positive": ">", "nonzero": "≠"}
 
@@ -66,6 +67,7 @@ class Instances:
 
     def __init__(self, system: System, ring: FlintRing, names: Sequence[str]):
         self.system, self.ring = system, ring
+        self.last: tuple[Mapping[str, Any], int, tuple[Any, ...] | None] = {}, -1, None
         self.dependent = self._dependent({name for _, name in system.roots})
         solved = {*system.values, *self.dependent}
         self.free = [n for n in names if n not in solved and not n.startswith(("√", "exp "))]
@@ -108,6 +110,8 @@ class Instances:
 
     def value(self, poly: Any, instance: Instance) -> Any:
         """Return the value of a polynomial in letters and roots of the system."""
+        if not self.system.roots and not self.system.exponentials:
+            return self._at(poly, instance.values)
         point = dict(instance.values)
         for s, name in self.system.roots:
             if name not in point:
@@ -142,12 +146,9 @@ class Instances:
                 now = {**said, name: words} if words else said
                 yield from self._complete({**point, name: value}, now, [n for n in open_ if n != name])
             return
-        for name, ratio in self.system.values.items():
-            value = self._ratio(ratio, point)
-            if value is None:
-                return
-            point[name] = value
-        yield Instance(point, said)
+        found = {name: self._ratio(ratio, point) for name, ratio in self.system.values.items()}
+        if None not in found.values():
+            yield Instance({**point, **found}, said)
 
     def _ratio(self, ratio: Ratio, point: Mapping[str, Any]) -> Any:
         """Return the value of a fraction, None where its denominator may be zero."""
@@ -159,15 +160,25 @@ class Instances:
         return self._at(ratio.top, point) / bottom
 
     def _at(self, poly: Any, point: Mapping[str, Any]) -> Any:
-        if any(isinstance(v, arb) for v in point.values()):
-            total: Any = fmpq(0)
-            for names, c in self.ring.terms(poly):
-                product: Any = rational(c)
-                for name in names:
-                    product = product * point[name]
-                total = product + total if isinstance(product, arb) else total + product
-            return total
-        return self.ring.at(poly, point)
+        row = self._row(point)
+        if row is not None:
+            return poly(*row)
+        total: Any = fmpq(0)
+        for names, c in self.ring.terms(poly):
+            product: Any = rational(c)
+            for name in names:
+                product = product * point[name]
+            total = product + total if isinstance(product, arb) else total + product
+        return total
+
+    def _row(self, point: Mapping[str, Any]) -> tuple[Any, ...] | None:
+        """Return the values of all letters in the order of the ring, None if one is a ball; that of the last point."""
+        known, size, row = self.last
+        if known is not point or size != len(point):
+            balls = any(isinstance(v, arb) for v in point.values())
+            row = None if balls else tuple(point.get(n, ZERO) for n in self.ring.names)
+            self.last = point, len(point), row
+        return row
 
     def _solutions(self, name: str, point: Mapping[str, Any]) -> Iterator[tuple[Any, str]]:
         """Iterate over the real roots of an equation in one letter: rational ones, and those of a quadratic."""

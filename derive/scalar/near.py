@@ -78,7 +78,7 @@ def _holds(equation: Equation, instance: Instance) -> bool:
 
 def _spread(work: Work) -> list[Instance]:
     """Return instances, those with few zeros and ones first: they tell formulas apart."""
-    found = work.instances.first(4 * POINTS, 400)
+    found = work.instances.first(2 * POINTS, 300)
     return sorted(found, key=lambda i: sum(abs(v) in (0, 1) for v in i.values.values()))[:POINTS]
 
 
