@@ -26,13 +26,14 @@ def claims() -> list[Row]:
 
 # ------------------------------------------------------------------------------------------------ ours
 def _ours() -> Iterator[Row]:
-    from derive.check import answer
+    import derive
     from derive.claim import Claim
 
     wrong, decided, seconds = 0, 0, list[float]()
     for entry in entries():
         start = time.perf_counter()
-        verdict = str(answer(Claim(entry.latex, entry.theory, entry.assume, entry.scalar)).verdict)
+        claim = Claim(entry.latex, entry.theory, entry.assume, entry.scalar)
+        verdict = derive.check(claim).results[0].verdict
         seconds.append(time.perf_counter() - start)
         wrong += verdict == TOLD[not entry.truth]
         decided += verdict in TOLD.values()
