@@ -45,9 +45,8 @@ def entries() -> Iterator[Entry]:
 def notations(latex: str) -> tuple[str, str, str]:
     """Return a formula as it is, in bold letters with upright transposes, and with loose brackets and primes."""
     bold = re.sub(r"(?<![\\A-Za-z{^])([A-Z])(?![a-z])", r"\\mathbf{\1}", latex).replace("^T", r"^{\mathsf T}")
-    loose = (
-        latex.replace("^T", r"^{\top}").replace("(", r"\left( ").replace(")", r" \right)").replace(" = ", r" \;=\; ")
-    )
+    loose = re.sub(r"(?<!\\left)\(", r"\\left( ", latex.replace("^T", r"^{\top}")).replace(" = ", r" \;=\; ")
+    loose = re.sub(r"(?<!\\right)\)", r" \\right)", loose)
     return latex, bold, loose
 
 
