@@ -30,6 +30,7 @@ from derive.latex.syntax import (
 from derive.latex.vocabulary import EXPECTATIONS, MOMENTS
 
 SPECTRAL = frozenset(("lambda", "sigma"))  # with an index or a bar they are functions of a matrix
+ESTIMATED = frozenset(("hat", "tilde", "dot", "ddot"))  # accents that no time wears
 BESIDE_MOMENTS = (Name("pi"), Name("d"))
 
 
@@ -59,8 +60,8 @@ def reading(head: Name, group: Fenced, functions: Collection[str] = ()) -> Readi
 def momentary(node: Node) -> bool:
     """Return whether a node looks like a time, a frequency or an index."""
     match node:
-        case Name(letter=letter):
-            return letter in MOMENTS
+        case Name(letter=letter, accents=accents):
+            return letter in MOMENTS and not ESTIMATED & set(accents)
         case Digits() | Infinite() | Blank("·"):
             return True
         case Plus(addends):

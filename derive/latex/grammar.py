@@ -28,6 +28,7 @@ from derive.latex.syntax import (
     Node,
     Over,
     Plus,
+    Raised,
     Related,
     Summed,
     Times,
@@ -272,14 +273,15 @@ class Reader(Operators):
             return [self._raised(node, exponents, start)]
         if node.letter == "E" and not exponents and token.text in ("[", "\\{") and not node.sub:
             return [self.scripted(self.expectation(start), start)]
-        if token.text not in ("(", "["):
-            return [self._raised(node, exponents, start)]
+        head = self._raised(node, exponents, start)
+        if token.text not in ("(", "[") or (isinstance(head, Raised) and node == Name("e")):
+            return [head]
         group = self.fenced()
         if isinstance(group, Fenced) and group.fence in ("(", "[") and self._applies(node, group):
             arguments = group.body.items if isinstance(group.body, Listed) else (group.body,)
-            applied = Applied(node, arguments, span=self.span(start))
-            return [self._raised(applied, exponents, start) if exponents else self.scripted(applied, start)]
-        return [self._raised(node, exponents, start), self.scripted(group, token)]
+            applied = Applied(head, arguments, span=self.span(start))
+            return [self.scripted(applied, start)]
+        return [head, self.scripted(group, token)]
 
     def _applies(self, head: Name, group: Fenced) -> bool:
         found = reading(head, group, self.functions)

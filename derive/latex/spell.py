@@ -168,7 +168,7 @@ def _needs_sign(left: Node, right: Node, piece: str) -> bool:
         return True
     group = _core(right)
     head = _core(left)
-    if not isinstance(head, Name) or not isinstance(group, Fenced):
+    if not isinstance(head, Name) or not isinstance(group, Fenced) or (isinstance(left, Raised) and head == Name("e")):
         return False
     if head.letter == "E" and group.fence in "[{":
         return True

@@ -137,7 +137,10 @@ class Fenced(Node):
 
 @dataclass(frozen=True)
 class Applied(Node):
-    """A letter followed by arguments that look like times, frequencies or indices: P(t), Phi(t,tau), lambda_i(A)."""
+    """A letter followed by arguments that look like times, frequencies or indices: P(t), Phi(t,tau), lambda_i(A).
+
+    ``head`` is a Name, or carries what stands between the letter and its arguments: x^T(t), Phi^{-1}(t,tau).
+    """
 
     head: Node
     arguments: tuple[Node, ...]

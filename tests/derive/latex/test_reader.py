@@ -104,7 +104,9 @@ TREES = {
     # application
     "P(t)": Applied(P, (t,)),
     "P(t)^T": Transposed(Applied(P, (t,)), "T"),
-    "P^T(t)": Transposed(Applied(P, (t,)), "T"),
+    "P^T(t)": Applied(Transposed(P, "T"), (t,)),
+    "e^{A t}(t - k)": Times((Raised(Name("e"), Times((A, t))), Fenced(Plus((("+", t), ("-", Name("k"))))))),
+    r"P(z - \hat z)": Times((P, Fenced(Plus((("+", Name("z")), ("-", Name("z", ("hat",)))))))),
     r"\Phi(t, t_0)": Applied(Name("Phi"), (t, Name("t", sub="0"))),
     r"P(k|k-1)": Applied(P, (Given(Name("k"), Plus((("+", Name("k")), ("-", ONE)))),)),
     r"P(\infty)": Applied(P, (Infinite(),)),

@@ -9,7 +9,7 @@ import pytest
 
 from derive.latex.grammar import read
 from derive.latex.spell import spell
-from derive.latex.syntax import Differentiated, Fenced, Name, Node, Transposed, walk
+from derive.latex.syntax import Applied, Differentiated, Fenced, Name, Node, Transposed, walk
 
 FOLDER = Path(__file__).parent / "displays"
 SOURCES = {"observer-notes": 7, "fang-2018": 79, "luenberger-notes": 8, "vander-velde-2004": 10}
@@ -50,6 +50,8 @@ def plain(node: Node) -> Node:
     match node:
         case Transposed(body):
             return Transposed(body)
+        case Applied(Transposed(body), arguments):
+            return Transposed(Applied(body, arguments))
         case Fenced(Name(sup="+" | "-") as body, "("):
             return body
         case Differentiated(body, Name("t"), 1):
