@@ -46,6 +46,8 @@ def plus(node: s.Plus, reader: Reader) -> Typed:
 
 def common(parts: list[Typed], reader: Reader) -> Shape:
     """Return the shape that all matrices among some terms have; None if all are numbers."""
+    if len(parts) > 1 and any(isinstance(term, Infinity) for term, _ in parts):
+        raise NotUnderstood("∞ is no number: it stands in limits, bounds and indices")
     matrices = [typed for typed in parts if typed[1] is not None]
     for other in matrices[1:]:
         if not reader.shapes.agree(matrices[0][1], other[1]):  # type: ignore[arg-type]
@@ -95,6 +97,8 @@ def multiplied(parts: list[Typed], reader: Reader) -> Typed:
     negative = False
     for term, own in parts:
         if own is None:
+            if isinstance(term, Infinity):
+                raise NotUnderstood("∞ is no number: it stands in limits, bounds and indices")
             if isinstance(term, Neg):  # a sign in brackets leaves the product
                 term, negative = term.body, not negative
             (group if group else done).append(term)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
 from derive.functions import is_scalar
-from derive.interpret.shapes import rebuilt
+from derive.interpret.shapes import NotUnderstood, rebuilt
+from derive.kernel import Rejected
 from derive.latex import plain
 from derive.terms import Dot, Equation, Expect, Identity, Number, Symbol, Term, Transpose, Zero, walk
 from derive.theory.claims.base import ClaimTheory, add_indexed, copy
@@ -21,7 +22,11 @@ Given = Sequence[tuple[Equation, bool]]  # and whether it defines a new letter
 
 
 def extended(theory: ClaimTheory, given: Given, reader: Reader) -> tuple[ClaimTheory, tuple[str, ...]]:
-    """Return a theory with what is given, and the names of that in order; all dimensions are found by now."""
+    """Return a theory with what is given, and the names of that in order; all dimensions are found by now.
+
+    Raises:
+        NotUnderstood: something is given that no rule reads.
+    """
     if not (given or reader.new or reader.roots or reader.eigenvalues or reader.sizes):
         return theory, ()
     made = copy(theory.theory)
@@ -39,7 +44,12 @@ def extended(theory: ClaimTheory, given: Given, reader: Reader) -> tuple[ClaimTh
             _declare(names[-1], equation, defines, made)
     kept = {k: v for k, v in theory.proved_by.items() if k in made.declared}
     optimal, found = theory.optimal & made.declared.keys(), (*theory.conditions, *conditions)
-    return replace(theory, theory=made, optimal=optimal, proved_by=kept, conditions=found), tuple(names)
+    claims = replace(theory, theory=made, optimal=optimal, proved_by=kept, conditions=found)
+    try:
+        _ = claims.reading
+    except Rejected as error:
+        raise NotUnderstood(f"an assumption that no rule reads: {error}") from None
+    return claims, tuple(names)
 
 
 def _introduce(made: Theory, given: Given, reader: Reader) -> None:

@@ -13,10 +13,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 from derive.context import Theory
+from derive.errors import InputError
 from derive.kernel import Rejected
 from derive.terms import Equation, Glyph, Reading, Symbol, Term
 
 Proved = tuple[str, str]  # lecture and step
+STEPS = 6  # between the first and the last index of a claim
 SCALAR = "1"  # used where all dimensions are 1
 INDEX = re.compile(r"^(?:([ijknNt])([+-]\d+)?|(\d+))$")
 
@@ -131,13 +133,21 @@ class Draft:
         return symbol
 
     def indices(self) -> dict[str, dict[int, set[str]]]:
-        """Return which families are used at which index: for each index letter, by its number."""
+        """Return which families are used at which index: for each index letter, by its number.
+
+        Raises:
+            InputError: indices that are many steps apart.
+        """
         letters, found = self.outline.letters.symbols, dict[str, dict[int, set[str]]]()
         for name in self.used:
             stem, index = split_index(name)
             if index and name not in letters and stem + "_#" in letters:
                 letter, number = count(index)
                 found.setdefault(letter, {}).setdefault(number, set()).add(stem)
+        for letter, numbers in found.items():
+            if max(numbers) - min(numbers) > STEPS:
+                apart = f"{index_at(letter, min(numbers))} and {index_at(letter, max(numbers))}"
+                raise InputError(f"indices: expected at most {STEPS} steps between them, got {apart}")
         return found
 
     def note(self, name: str, by: Proved | None, optimal: bool) -> None:
