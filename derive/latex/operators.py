@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from derive.latex.application import momentary
-from derive.latex.operands import ONE, Operands
+from derive.latex.groups import ONE
+from derive.latex.operands import Operands
 from derive.latex.syntax import (
     Called,
     Differentiated,
