@@ -17,7 +17,7 @@ from derive.theory.claims.base import ClaimTheory, indexed_name, split_index
 
 __all__ = ["conventions", "letters"]
 
-SECONDS = 0.3  # in all
+SECONDS = 3.0  # in all
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,6 @@ from derive.terms import Equation, Zero, lower, lower_trace
 
 __all__ = ["polynomials", "prove_equation", "refute_equation"]
 
-REFUTE = 3.0  # seconds for a counterexample
-
 
 def prove_equation(equation: Equation, work: Workspace) -> Part | None:
     """Search for a proof of one equation or inequality."""
@@ -78,19 +76,19 @@ def refute_equation(equation: Equation, work: Workspace) -> Counterexample | Non
     if rule == "gradient":
         left = gradient_of(equation, work)
         right = None if isinstance(equation.rhs, Zero) else lower(equation.rhs, work.reading)[0][0]
-        return work.refute(left, right, seconds=REFUTE) if left is not None else None
+        return work.refute(left, right) if left is not None else None
     if rule in ("trace", "trace order"):
         left, right = (lower_trace(side, work.reading) for side in (equation.lhs, equation.rhs))
         if left.rows != right.rows:
             right = Poly(right.terms, left.rows, left.cols)
-        return work.refute(left, right, equation.relation, trace=True, seconds=REFUTE)
+        return work.refute(left, right, equation.relation, trace=True)
     left = lower(equation.lhs, work.reading)
     difference = order_claim(equation, work.reading)
     if len(left) > 1 and equation.relation in ("⪰", "≻"):
         return None
     for row, others in zip(left, difference, strict=True):
         for p, d in zip(row, others, strict=True):
-            found = work.refute(p, p - d, equation.relation, seconds=REFUTE)
+            found = work.refute(p, p - d, equation.relation)
             if found:
                 return found
     return None
@@ -103,7 +101,7 @@ def _refute_expectation(equation: Equation, work: Workspace) -> Counterexample |
     if not all(sides):
         return None
     left, *right = (expect(images[0], work.reading.context) for images in sides)
-    return work.refute(left, right[0] if right else None, equation.relation, seconds=REFUTE)
+    return work.refute(left, right[0] if right else None, equation.relation)
 
 
 def polynomials(equation: Equation, work: Workspace) -> list[Poly]:

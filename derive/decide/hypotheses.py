@@ -189,4 +189,4 @@ def without(work: Workspace, name: str, lhs: Poly, rhs: Poly, relation: str, tra
     relations = leave_out([name], problem.relations)
     facts = {n: f for n, f in problem.facts.items() if n != name and n not in work.theory.proved_by}
     fewer = replace(problem, relations=relations, facts=facts)
-    return refute(lhs, rhs, fewer, relation=relation, trace=trace, seconds=min(work.left, 0.3))
+    return refute(lhs, rhs, fewer, relation=relation, trace=trace, most=400, seconds=work.left)

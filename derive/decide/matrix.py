@@ -134,6 +134,7 @@ def _proved(
         Verdict.proved,
         "kernel",
         hypotheses_used=rests_on,
+        hypotheses_added=tuple(name for name in rests_on if name in theory.added),
         hypotheses_not_needed=not_needed(statement.symbols, rests_on, theory),
         assumed=statement.assumed,
         needed=_needed(statement, work, rests_on) if explain else {},

@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 from derive.claim import Nearest
 from derive.decide.edits import Edit, edits
@@ -27,8 +28,9 @@ from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["Surroundings", "nearest", "with_equations"]
 
-SECONDS = 1.5  # in all
-TRIED = 12  # edits that are proved or not, after the random instances
+SECONDS = 4.0  # in all; the numbers below are what bounds the search
+EDITS = 6000  # that are tried at random instances
+TRIED = 12  # that are proved or not, after the random instances
 POINTS = 2
 CROSS = ("N", "S")  # without this letter in a claim the noises are uncorrelated
 
@@ -65,13 +67,13 @@ def nearest(around: Surroundings, seconds: float = SECONDS) -> tuple[Nearest, st
         return None
     (equation,) = statement.equations
     tried: set[Equation] = set()
-    for edit, changed in _ordered(equation, around.letters):
+    for edit, changed in islice(_ordered(equation, around.letters), EDITS):
         if time.monotonic() > deadline or len(tried) >= TRIED:
             return None
         if changed in tried or _trivial(changed) or not around.holds((changed,)):
             continue
         tried.add(changed)
-        if prove_statement(with_equations(statement, (changed,)), min(1.0, deadline - time.monotonic())):
+        if prove_statement(with_equations(statement, (changed,)), deadline - time.monotonic()):
             return Nearest(latex(changed), edit.text), sentence(edit, statement.theory.key)
     return None
 
@@ -165,7 +167,7 @@ def with_equations(statement: Statement, equations: tuple[Equation, ...]) -> Sta
 
 def _points(theory: ClaimTheory, letters: Sequence[Symbol], equations: tuple[Equation, ...]) -> list[Point]:
     """Return instances at which edits are tried: of the equations, or of everything for an inequality."""
-    work = Workspace(theory, time.monotonic() + 1.0, equations)
+    work = Workspace(theory, time.monotonic() + SECONDS, equations)
     problem = work.problem()
     if problem is None:
         return []
@@ -180,7 +182,9 @@ def _points(theory: ClaimTheory, letters: Sequence[Symbol], equations: tuple[Equ
         except Rejected:
             continue
     plain, order = replace(problem, facts={}), any(e.relation not in ("=", ":=") for e in equations)
-    found: list[Instance] = instances(problem, polys, POINTS) if order else sample(plain, polys, POINTS)
+    found: list[Instance] = (
+        instances(problem, polys, POINTS, seconds=SECONDS) if order else sample(plain, polys, POINTS)
+    )
     return [Point(i, work) for i in found]
 
 

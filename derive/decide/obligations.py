@@ -21,7 +21,7 @@ from derive.terms import Inverse, Neg, Product, Term, Transpose, lower
 __all__ = ["Undefined", "Unjustified", "invert", "justify", "justify_given"]
 
 DEPTH = 3  # how often a matrix may be traced back to another one
-SECONDS = 1.0  # for the search of a singular instance
+SINGULAR = 1500  # instances that are tried for one where a matrix is singular
 
 
 @dataclass
@@ -63,7 +63,7 @@ def justify(term: Term, work: Workspace, refuting: bool = True, supposing: bool 
     poly = grid[0][0]
     if work.inverse(poly) is not None or _by_factors(term.body, work) or invert(poly, work) is not None:
         return
-    found = work.refute(poly, relation="invertible", seconds=SECONDS) if refuting else None
+    found = work.refute(poly, relation="invertible", most=SINGULAR) if refuting else None
     if found and not moves(poly, work.reading.context, work.reading.inverses):  # a generic point avoids it
         raise Undefined(term.body, found)
     if not supposing:

@@ -17,7 +17,7 @@ from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["contradictory", "satisfiable"]
 
-VACUITY = 2.0  # seconds for an instance of the hypotheses
+VACUITY = 5.0  # seconds for an instance of the hypotheses
 
 
 class Same:

@@ -25,7 +25,9 @@ from derive.terms import Equation, Number, Reading, Symbol, Zero, lower
 from derive.theory.claims.base import ClaimTheory
 
 SAMPLES = 2
-ATTEMPT = 1.5  # seconds for one search of a certificate
+OVERLAPS = 600  # in one search of a certificate; what is found needs less than 40
+MOST = 4000  # instances that are tried for a counterexample
+ATTEMPT = 3.0  # seconds for one search of a certificate
 
 
 def proof_reading(theory: ClaimTheory, equations: Iterable[Equation] = ()) -> Reading:
@@ -192,7 +194,7 @@ class Workspace:
         equations = Hypotheses(context.alphabet, relations, {}, inverses, context.nonnegative)
         if claim.terms and not holds_at(self._samples(equations, claim), claim, trace):
             return None
-        found = prove(claim, relations, context.alphabet, trace=trace, seconds=self.attempt)
+        found = prove(claim, relations, context.alphabet, trace=trace, overlaps=OVERLAPS, seconds=self.attempt)
         if found:
             replay(found, claim, context.relations, context.alphabet)
         return found
@@ -220,6 +222,7 @@ class Workspace:
             strict=strict,
             inverse=inverse,
             inverses=self.reading.inverses,
+            overlaps=OVERLAPS,
             seconds=self.attempt,
         )
 
@@ -253,7 +256,7 @@ class Workspace:
         return self.lemma(f"{name} > 0", letter, proof, strict=True) if proof else None
 
     def refute(
-        self, lhs: Poly, rhs: Poly | None = None, relation: str = "=", trace: bool = False, seconds: float = 2.0
+        self, lhs: Poly, rhs: Poly | None = None, relation: str = "=", trace: bool = False, most: int = MOST
     ) -> Counterexample | None:
         """Search for an exact instance of all hypotheses where lhs relation rhs fails."""
         problem = self.problem()
@@ -261,8 +264,8 @@ class Workspace:
         scalars = {s for p in (lhs, rhs or zero) for m, _ in p.terms for s in m}
         if problem is None or UNIT in scalars:  # an instance is real
             return None
-        bound = min(self.left, seconds)
-        return refute(lhs, zero if rhs is None else rhs, problem, relation=relation, trace=trace, seconds=bound)
+        right = zero if rhs is None else rhs
+        return refute(lhs, right, problem, relation=relation, trace=trace, most=most, seconds=self.left)
 
     def proves_inverse(self, of: Poly, by: Poly) -> tuple[tuple[Term, ...], tuple[Term, ...]] | None:
         """Return the addends of M X = I and X M = I."""

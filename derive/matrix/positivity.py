@@ -38,6 +38,7 @@ def prove_positive(
     strict: bool = False,
     inverse: Poly | None = None,
     inverses: Mapping[Poly, str] | None = None,
+    overlaps: int | None = None,
     seconds: float = 5.0,
 ) -> Positivity | None:
     """Search for a proof of G >= 0, or of G > 0 if ``strict``.
@@ -51,15 +52,16 @@ def prove_positive(
         strict: ask for a positive definite addend with a right inverse of its factor.
         inverse: that right inverse Z; without it, multiples of the identity and declared inverses are tried.
         inverses: letters for inverses, by the polynomial that they invert.
+        overlaps: bound on the overlaps that are resolved for each identity.
         seconds: bound on the time of each identity.
     """
     for proposal in [tuple(squares)] if squares is not None else proposals(claim, context):
         try:
             left = rests(claim, proposal, context)
-            terms = _prove_blocks(left, context, seconds)
+            terms = _prove_blocks(left, context, overlaps, seconds)
             proof = Positivity(claim, proposal, terms) if terms is not None else None
             if proof and strict:
-                proof = _strict(proof, context, inverse, inverses or {}, seconds)
+                proof = _strict(proof, context, inverse, inverses or {}, overlaps, seconds)
             if proof:
                 replay_positivity(proof, claim, context)
                 return proof
@@ -81,12 +83,14 @@ def rests(claim: Grid, squares: Sequence[Square], context: Context) -> Grid:
     return tuple(map(tuple, left))
 
 
-def _prove_blocks(rests: Grid, context: Context, seconds: float) -> tuple[tuple[tuple[Term, ...], ...], ...] | None:
+def _prove_blocks(
+    rests: Grid, context: Context, overlaps: int | None, seconds: float
+) -> tuple[tuple[tuple[Term, ...], ...], ...] | None:
     out: list[tuple[tuple[Term, ...], ...]] = []
     for row in rests:
         line: list[tuple[Term, ...]] = []
         for rest in row:
-            certificate = prove(rest, context.relations, context.alphabet, seconds=seconds)
+            certificate = prove(rest, context.relations, context.alphabet, overlaps=overlaps, seconds=seconds)
             if certificate is None:
                 return None
             line.append(certificate.terms)
@@ -95,7 +99,12 @@ def _prove_blocks(rests: Grid, context: Context, seconds: float) -> tuple[tuple[
 
 
 def _strict(
-    proof: Positivity, context: Context, inverse: Poly | None, inverses: Mapping[Poly, str], seconds: float
+    proof: Positivity,
+    context: Context,
+    inverse: Poly | None,
+    inverses: Mapping[Poly, str],
+    overlaps: int | None,
+    seconds: float,
 ) -> Positivity | None:
     """Add a witness of strictness: an addend with a positive definite core and a factor with a right inverse."""
     for i, s in enumerate(proof.squares):
@@ -106,7 +115,7 @@ def _strict(
             if (z.rows, z.cols) != (factor.cols, factor.rows):
                 continue
             injective = factor * z - identity(factor.rows)
-            certificate = prove(injective, context.relations, context.alphabet, seconds=seconds)
+            certificate = prove(injective, context.relations, context.alphabet, overlaps=overlaps, seconds=seconds)
             if certificate:
                 return replace(proof, strict=i, inverse=z, inverse_terms=certificate.terms)
     return None

@@ -27,11 +27,19 @@ if TYPE_CHECKING:
 __all__ = ["instances", "refute", "satisfy"]
 
 ENOUGH = 60  # instances that satisfy the hypotheses without failing, before larger sizes are tried; tries of a size
+MOST = 4000  # instances that are tried for one that satisfies the hypotheses
 TRIES = 2000  # attempts at scalars
 
 
 def refute(
-    lhs: Poly, rhs: Poly, problem: Hypotheses, *, relation: str = "=", trace: bool = False, seconds: float = 2.0
+    lhs: Poly,
+    rhs: Poly,
+    problem: Hypotheses,
+    *,
+    relation: str = "=",
+    trace: bool = False,
+    most: int | None = None,
+    seconds: float = 2.0,
 ) -> Counterexample | None:
     """Search for an instance of the hypotheses where lhs relation rhs is false.
 
@@ -41,6 +49,7 @@ def refute(
         problem: the hypotheses; those that bear on the claim hold exactly at what is returned.
         relation: '=', '≠', or '⪰', '≻' in the Loewner order; 'invertible' says that lhs is, 'false' nothing true.
         trace: compare the traces, by '=', '≠', '≥' or '>'.
+        most: bound on the number of instances that are tried, the same on every machine.
         seconds: bound on the time.
 
     Returns:
@@ -63,7 +72,7 @@ def refute(
         problem, lhs, rhs = problem.at_start(), at_start(lhs), at_start(rhs)
         plans = make_plans(problem, (lhs, rhs))
     attempts = [Attempt(problem, plan, lhs, rhs, relation, trace) for plan in plans]
-    for attempt, instance in _candidates(attempts):
+    for attempt, instance in islice(_candidates(attempts), most):
         if time.monotonic() > deadline:
             return None
         if attempt.fails(instance):
@@ -85,7 +94,8 @@ def satisfy(problem: Hypotheses, polys: Sequence[Poly], *, seconds: float = 2.0)
         problem, polys = problem.at_start(), [at_start(p) for p in polys]
         plans = make_plans(problem, polys)
     nothing = Poly({}, "1", "1")
-    for attempt, instance in _candidates([Attempt(problem, plan, nothing, nothing, "false", False) for plan in plans]):
+    attempts = [Attempt(problem, plan, nothing, nothing, "false", False) for plan in plans]
+    for attempt, instance in islice(_candidates(attempts), MOST):
         if time.monotonic() > deadline:
             return None
         if attempt.fails(instance):
@@ -100,7 +110,7 @@ def instances(problem: Hypotheses, polys: Sequence[Poly], count: int, *, seconds
     deadline, nothing, found = time.monotonic() + seconds, Poly({}, "1", "1"), list[Instance]()
     for plan in make_plans(problem, polys)[-1:]:
         attempt = Attempt(problem, plan, nothing, nothing, "false", False)
-        for instance in matrix_instances(problem, plan, [*polys], repeat=3):
+        for instance in islice(matrix_instances(problem, plan, [*polys], repeat=3), MOST):
             if len(found) == count or time.monotonic() > deadline:
                 break
             if attempt.fails(instance):

@@ -24,6 +24,7 @@ def prove(
     trace: bool = False,
     eliminate: Sequence[str] = (),
     max_degree: int = 12,
+    overlaps: int | None = None,
     seconds: float = 5.0,
 ) -> Certificate | None:
     """Search for a proof of claim = 0 (under a trace: tr claim = 0).
@@ -41,6 +42,7 @@ def prove(
         trace: compare words up to rotation and transposition.
         eliminate: letters to be removed first, e.g. the unknown of an equation.
         max_degree: bound on letters and scalars of an overlap.
+        overlaps: bound on the number of overlaps that are resolved, the same on every machine.
         seconds: bound on the time.
 
     Source: T. Mora, An introduction to commutative and noncommutative Groebner bases, 1994; J. Helton, M. Stankus,
@@ -62,6 +64,7 @@ def prove(
     origin = declare(completion, relations)
     sizes = _by_size(goal, claim.rows, codec) if trace else {claim.rows: goal}
     steps: list[Step] = []
+    resolved = 0
     while True:
         for size, poly in sizes.items():
             sizes[size], used = _reduce(completion, poly, size)
@@ -71,8 +74,8 @@ def prove(
             return Certificate(claim, _terms(completion, steps + more, origin), trace)
         grown = False
         while not grown:
-            grown = completion.resolve()
-            if grown is None or time.monotonic() > deadline:
+            grown, resolved = completion.resolve(), resolved + 1
+            if grown is None or resolved == overlaps or time.monotonic() > deadline:
                 return None
 
 
