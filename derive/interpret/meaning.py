@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
@@ -16,8 +17,13 @@ from derive.interpret.statement import Statement
 from derive.interpret.times import time_of
 from derive.latex import latex
 from derive.latex import syntax as s
+from derive.latex.alphabet import ACCENTS, GREEK
 from derive.terms import Equation, Symbol, Term, walk
 from derive.theory.claims.base import SCALAR, ClaimTheory
+
+WORDS = frozenset(
+    {*GREEK, *ACCENTS, "check", "overline", "widehat", "widetilde", "underline"}
+)  # names of letters and accents
 
 
 def understand(
@@ -64,19 +70,21 @@ def understand(
 
 
 def roles(notation: Mapping[str, str]) -> dict[str, str]:
-    """Return a notation by the spelling of its letters, {"\\\\hat x": "\\\\bar x"} as {"hat x": "bar x"}."""
+    r"""Return a notation by the spelling of its letters, {"\hat x": "\bar x"} as {"hat x": "bar x"}."""
     return {spelling(mine): spelling(role) for mine, role in notation.items()}
 
 
 @lru_cache(maxsize=256)
 def spelling(letter: str) -> str:
-    """Return how a letter that is written in LaTeX is spelled.
+    r"""Return how a letter is spelled that is written in LaTeX, with its backslashes or without: \hat{x} or hat{x}.
 
     Raises:
         NotUnderstood: it is no letter.
     """
     from derive.latex.grammar import read
 
+    if "\\" not in letter:
+        letter = re.sub(r"[A-Za-z]{2,}", lambda m: rf"\{m[0]}" if m[0] in WORDS else m[0], letter)
     match read(letter).statements:
         case (s.Name() as name,):
             return spell(name, {})

@@ -45,6 +45,8 @@ def exponent_text(node: s.Node) -> str:
             return letter
         case s.Fenced(body):
             return exponent_text(body)
+        case s.Infinite():
+            return "∞"
         case _:
             return "?"
 

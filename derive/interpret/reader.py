@@ -207,16 +207,15 @@ class Reader:
 
     def _delta(self, argument: s.Node) -> Typed:
         """Read the Dirac delta of a difference of times, or of a lag between two times of the formula."""
-        match argument:
-            case s.Plus((("+", one), ("-", two))):
-                first, second = time_of(one), time_of(two)
-                if first is not None and second is not None:
-                    return Delta(first, second), None
-            case _:
-                lag = time_of(argument)
-                pair = difference(self.times, lag) if lag is not None else None
-                if pair is not None:
-                    return Delta(*pair), None
+        lag = time_of(argument)
+        pair = difference(self.times, lag) if lag is not None else None
+        if isinstance(argument, s.Plus) and len(argument.addends) > 1 and argument.addends[-1][0] == "-":
+            before = argument.addends[:-1]
+            first = time_of(before[0][1] if len(before) == 1 else s.Plus(before))
+            second = time_of(argument.addends[-1][1])
+            pair = (first, second) if first is not None and second is not None else pair
+        if pair is not None:
+            return Delta(*pair), None
         raise NotUnderstood("δ: expected the difference of two times, as in \\delta(t-\\tau)")
 
 

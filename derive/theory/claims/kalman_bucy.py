@@ -13,6 +13,7 @@ from itertools import product
 
 from derive.context import Theory
 from derive.functions import PI
+from derive.spectral import Conjugate
 from derive.terms import Delta, Dot, Expect, Glyph, Identity, Term, Zero, block
 from derive.theory.claims.base import Draft, Outline
 
@@ -98,6 +99,7 @@ def _names(t: Theory) -> dict[str, Term]:
             names[f"Phi_{letter}(jomega)"] = s[f"Phi_{letter}(ω)"]
     for index in "ijk":
         names |= {f"varphi_{index}": s["φ"], f"phi_{index}": s["φ"], f"eta_{index}": s["η"], f"z_{index}": s["ζ"]}
+        names[f"bar z_{index}"] = Conjugate(s["ζ"])
     names |= {f"{k}(s)": s[k] for k in "fpq"} | {"sigma_0": s["σ0"], "omega_0": s["ω0"]}
     names["s_0"] = s["σ0"] + s["j"] * s["ω0"]
     for sub in ("z-bary", "z-haty"):

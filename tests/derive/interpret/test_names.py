@@ -97,6 +97,11 @@ def test_a_notation_of_an_accent():
     assert [s.name for s in found.symbols] == ["xbar", "A", "x"]
 
 
+def test_a_notation_without_backslashes():
+    found = meant("kalman-bucy", r"\Sigma = \check x \check x^T", notation={"Sigma": "P", "check{x}": "hat{x}"})
+    assert [s.name for s in found.symbols] == ["P(t)", "xbar"]
+
+
 def test_a_letter_whose_role_is_taken_is_an_error():
     with pytest.raises(NotUnderstood, match="A: the notation gives its role to F"):
         meant("luenberger-dt", "P = A P F^T + Q", notation={"F": "A"})
