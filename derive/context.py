@@ -12,13 +12,14 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, Literal
 
-from derive.functions import Limit, Power, Start, is_scalar, value
+from derive.functions import Limit, Power, Start, behind, is_scalar, value
 from derive.kernel import Alphabet, Letter, Poly, Rejected, identity
 from derive.real import (
     COMPLEX,
     FREQUENCY,
     RESERVED,
     STEPS,
+    SUPPOSED,
     TIME,
     UNIT,
     Family,
@@ -318,6 +319,8 @@ class Theory:
         )
         generic = frozenset(d.generic for d in self.declared.values() if isinstance(d, Declared) and d.generic)
         self._check_scalars()
+        if any(name in SUPPOSED or owner(name) != name for name in self.declared):
+            raise Rejected("a declaration has a name of its own, not that of a part or of what a proof supposes")
         real = Real(
             families=dict(self.families),
             sequences=self._progressions(),
@@ -364,6 +367,8 @@ class Theory:
             raise Rejected("an arbitrary parameter, s or j is declared as something else as well")
         if taken & RESERVED or any(counts[f.index] != f.count for f in self.families.values()):
             raise Rejected("roots are numbered by an index of their own, from 1 to one count")
+        if self.nonnegative & self._pending():
+            raise Rejected("a number that stands for another is nonnegative by its definition, or by a hypothesis")
 
     def _progressions(self) -> dict[str, Progression]:
         """Return the sequences, each of scalars of its own that nothing else has a meaning for."""
@@ -459,6 +464,7 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
     if isinstance(item, Declared) and item.statement.relation == ":=" and isinstance(item.statement.lhs, Symbol):
         below = frozenset(n.name for n in walk(item.statement.rhs) if isinstance(n, Symbol))
         letters = {**reading.real.letters, item.statement.lhs.name: below}
+        _check_letter(item.statement, reading)
         reading = replace(reading, real=replace(reading.real, letters=letters))
     reading = replace(
         reading, real=replace(reading.real, fixed={**reading.real.fixed, item.name: _fixed(item, reading)})
@@ -476,6 +482,15 @@ def declare(reading: Reading, item: Declared | DeclaredInverse | DeclaredFact | 
     return replace(reading, adopted=reading.adopted | {item.name})
 
 
+def _check_letter(statement: Equation, reading: Reading) -> None:
+    """Reject the definition of a matrix that depends on s or j, unless the letter is said to be complex."""
+    lhs = statement.lhs
+    if isinstance(lhs, Symbol) and not lhs.scalar and lhs.name not in reading.context.complex:
+        polys = [poly for row in lower(statement.rhs, reading) for poly in row]
+        if any(behind(poly, reading) & {COMPLEX, UNIT} for poly in polys):
+            raise Rejected(f"{lhs.name} is not declared to be complex, but what it stands for may be")
+
+
 def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, reading: Reading) -> frozenset[str]:
     """Return the scalars that a hypothesis holds at some value, and that no limit or derivative may move.
 
@@ -488,7 +503,8 @@ def _fixed(item: Declared | DeclaredInverse | DeclaredFact | DeclaredAtom, readi
     nodes = [n for t in terms_of(item) for n in walk(t)]
     found = reading.real.reached(n.name for n in nodes if isinstance(n, Symbol))
     found -= {name for f in reading.real.families.values() for name in (f.index, f.count)}
-    if isinstance(item, DeclaredFact) or any(isinstance(n, (Det, Trace, Roots)) for n in nodes):
+    functions = [n for node in nodes if isinstance(node, (Det, Trace, Roots)) for n in walk(node)]
+    if isinstance(item, DeclaredFact) or any(isinstance(n, Symbol) and n.name == COMPLEX for n in functions):
         found -= {COMPLEX}
     if any(isinstance(n, Symbol) and not n.scalar and n.name in reading.context.complex for n in nodes):
         found -= {COMPLEX}
@@ -553,6 +569,8 @@ def _check_recursion(
     starts = isinstance(lhs, Start) and item.statement.relation == ":="
     if item.every and not starts and (item.statement.relation != "=" or not names & (next_ - real.pending)):
         raise Rejected(f"{item.name}: it does not say how a sequence goes on")
+    if item.every and not starts and not scalars_of(value(lhs, reading) - value(item.statement.rhs, reading)) & next_:
+        raise Rejected(f"{item.name}: the next member drops out of it")
     varied = {COMPLEX, UNIT, FREQUENCY, *real.arbitrary, *real.running} | _names(real.families)
     if (defines or item.every) and real.reached(names) & (varied | ({TIME} if item.every else set())):
         raise Rejected(f"{item.name}: a sequence depends on nothing that the rules vary")

@@ -17,7 +17,7 @@ from derive.functions import Definite, Limit, Rate, Start, single_of
 from derive.induction import Induction, atoms_in, check_induction, starts_in
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
-from derive.real import COMPLEX, HYPOTHESIS, NEGATION, STEPS, TIME, Sign, scalars_of
+from derive.real import COMPLEX, STEPS, SUPPOSED, TIME, Sign, scalars_of
 from derive.roots import check_positive, determinant_claim
 from derive.rules import (
     Comparison,
@@ -65,7 +65,6 @@ PARTS: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys((*RULES, "positive"), ("sign", "links")),
 }  # the parts of a proof that a rule replays, where they are not the identities
 FUNCTIONS = ("modulus", "mirrored", "same roots", "trace of roots")  # rules with links that hold for every s
-SUPPOSED = frozenset({NEGATION, HYPOTHESIS})  # what a certificate supposes, and no step or declaration is called
 DIRECTION = "δ"  # the letter along which a gradient is taken, declared as "δ" + the letter's name
 
 
@@ -305,8 +304,10 @@ def verify(theory: Theory, steps: Sequence[Step]) -> list[Outcome]:
     taken = {*theory.declared, *SUPPOSED}
     for step in steps:
         try:
-            if step.name in taken:
+            if step.name in {*taken, *reading.context.facts, *reading.context.relations}:
                 raise Rejected(f"the name {step.name} is taken")
+            if owner(step.name) != step.name:
+                raise Rejected(f"{step.name} is the name of a part of {owner(step.name)}")
             taken.add(step.name)
             check(step, reading, earlier)
             reading = learn(reading, theory, step)

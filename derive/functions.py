@@ -409,12 +409,17 @@ def square_of(body: Term, reading: Reading) -> Poly:
         raise Rejected("no determinant or trace of an integral or of white noise is read")
     if not _constant(grid[0][0], reading):
         raise Rejected("no determinant or trace of a matrix that depends on time is read")
-    if _behind(grid[0][0], reading) - {COMPLEX}:
+    if hidden(grid[0][0], reading) - {COMPLEX}:
         raise Rejected("no determinant or trace of a matrix that depends on a parameter other than s is read")
     return grid[0][0]
 
 
-def _behind(poly: Poly, reading: Reading) -> set[str]:
+def behind(poly: Poly, reading: Reading) -> set[str]:
+    """Return the scalars on which a polynomial in matrices depends."""
+    return reading.real.reached(scalars_of(poly)) | hidden(poly, reading)
+
+
+def hidden(poly: Poly, reading: Reading) -> set[str]:
     """Return the scalars on which letters depend: those in what they invert, and in what defines them."""
     found, seen, waiting = set[str](), set[str](), {parts(a)[0] for _, w in poly.terms for a in w}
     names = {letter: matrix for matrix, letter in reading.inverses.items()}
@@ -578,7 +583,7 @@ def _check_bound(term: Definite, reading: Reading) -> None:
     """Reject an integrand with t as well as the variable of integration, or with what is defined by that."""
     name, real = term.symbol.name, reading.real
     if name != TIME:
-        _symbol(term.symbol, reading)
+        variable(term.symbol, reading)
         others = {s.name for s in walk(term.body) if isinstance(s, Symbol) and s.name != name}
         if name in real.atoms or any(real.varies(s, v) for s in others for v in (name, TIME)):
             raise Rejected(f"the integrand depends on {TIME}, or through a symbol on {name}")

@@ -19,6 +19,7 @@ from derive.rules import Context, Fact
 SIGNS = {"≥": "nonnegative", ">": "positive", "≠": "nonzero"}
 NEGATION = "¬"  # the fact (for ≠: the relation) that the claim is false
 HYPOTHESIS = "claim at k"  # what a step of an induction may use, the claim that it is about
+SUPPOSED = frozenset({NEGATION, HYPOTHESIS})  # what a certificate supposes, and no step or declaration is called
 ORIGIN, INFINITY = "0", "∞"
 FREQUENCY = "ω"  # the variable of improper integrals
 TIME = "t"  # the variable of integrals from 0
@@ -162,6 +163,7 @@ class Real:
             atom, family = self.atoms.get(name), self.families.get(name)
             if atom is not None:
                 waiting |= scalars_of(atom.of) | (scalars_of(atom.by) if atom.by is not None else set())
+                waiting |= {TIME} if atom.kind == "integral" else {*atom.over.split()}
             if family is not None:
                 waiting |= {family.real, family.imaginary}
             if self.sequence(name):
