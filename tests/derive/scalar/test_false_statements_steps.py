@@ -1,0 +1,222 @@
+"""False statements about every number of steps, and about functions of s, ω or t, that a forged proof might get past.
+
+Each is the smallest that one gap would let through. The theories are satisfiable.
+"""
+
+from __future__ import annotations
+
+import re
+from fractions import Fraction
+
+import pytest
+
+from derive.context import Theory
+from derive.derivation import Proof, Step, verify
+from derive.functions import ON_CIRCLE, Definite, Infinity, Limit, Log, Rate
+from derive.induction import Induction, claim_of
+from derive.kernel import Certificate, Poly, Rejected
+from derive.kernel import Term as Addend
+from derive.real import HYPOTHESIS, NEGATION, Sign, SignProduct, constant, scalar
+from derive.rules import Positivity, Square
+from derive.spectral import At, Det, Modulus, Roots
+from derive.terms import Equation, Identity, Number, Product, Symbol, Term, Trace, Zero
+from tests.derive.scalar.test_false_statements import linked, same, sign
+from tests.derive.scalar.test_induction import counting, free, sequence
+
+ZERO, ONE, NONE, UNIT = Zero("", ""), Number(Fraction(1)), Number(Fraction(0)), Fraction(1)
+
+
+def number(n: int) -> Number:
+    return Number(Fraction(n))
+
+
+def theory(*scalars: str) -> tuple[Theory, list[Symbol]]:
+    t = Theory("attack", "A theory for one attack")
+    return t, [t.scalar(name) for name in scalars]
+
+
+def complaints(t: Theory, *steps: Step) -> list[str]:
+    """Return why the last step is not accepted, or the theory itself is not."""
+    try:
+        outcomes = verify(t, steps)
+    except Rejected as error:
+        return [str(error)]
+    return [] if outcomes[-1].accepted else [o.message for o in outcomes if not o.accepted]
+
+
+def refused(t: Theory, *steps: Step, match: str) -> None:
+    found = complaints(t, *steps)
+    assert any(re.search(match, message) for message in found), found
+
+
+def accepted(t: Theory, *steps: Step) -> None:
+    outcomes = verify(t, steps)
+    assert all(o.accepted for o in outcomes), [o for o in outcomes if not o.accepted]
+
+
+def use(name: str, coefficient: int = 1, *scalars: str) -> Addend:
+    return Addend(Fraction(coefficient), tuple(sorted(scalars)), (), name, False, ())
+
+
+def identity(name: str, lhs: Term, rhs: Term, claim: Poly, *terms: Addend, uses: tuple[str, ...] = ()) -> Step:
+    proof = Proof(identities=(Certificate(claim, terms),))
+    return Step(name, Equation(lhs, "=", rhs), "scalar", (), proof, uses, lemma=True)
+
+
+def induction(t: Theory, statement: Equation, *step: Addend, uses: tuple[str, ...]) -> Step:
+    """An induction of an equation that is an identity at the start."""
+    reading = t.reading()
+    claim = claim_of(statement, reading)
+    proof = Proof(identities=(Certificate(claim.start), Certificate(claim.later, step)))
+    starts = tuple(p.name for p in reading.real.sequences.values())
+    return Step("every k", statement, "induction", (), proof, (*uses, *starts), lemma=True)
+
+
+# ------------------------------------------------------------------------------------------------ what a step rests on
+@pytest.mark.parametrize("name", ["L.left", "L[1,1]", "L"])
+def test_a_lemma_whose_name_hides_what_it_rests_on(name: str):
+    """y_{k+1} = y_k + k is not 0 for every k; k = 0 is a case, and a lemma called L.left is no part of an L."""
+    t, (k,) = theory("k")
+    y = sequence(t, "y", NONE, lambda y: y + k)
+    t.assume("k = 0", k, "=", ZERO, case=True)
+    lemma = identity(name, k, ZERO, scalar("k"), use("k = 0"), uses=("k = 0",))
+    claim = induction(t, Equation(y, "=", ZERO), use("y'"), use(HYPOTHESIS), use(name), uses=("y'", name, "L"))
+    refused(t, lemma, claim, match="holds k at some value" if name == "L" else "the name of a part of L")
+
+
+def test_a_lemma_by_the_name_of_what_is_known_anyhow():
+    """What is called In, as the identity matrix is, need not be named by the steps that use it."""
+    t, (x,) = theory("x")
+    t.matrix("A", "n", "n")
+    refused(t, same(x, x, "In"), match="is taken")
+    accepted(t, same(x, x, "of size n"))
+
+
+@pytest.mark.parametrize("name", [HYPOTHESIS, NEGATION, "M.left"])
+def test_a_declaration_by_a_name_that_no_certificate_has_to_give(name: str):
+    t, (k,) = theory("k")
+    counting(t)
+    t.assume(name, k, "=", ZERO, case=True)
+    refused(t, same(k, k), match="a name of its own")
+
+
+def test_a_number_that_is_nonnegative_for_some_steps_only():
+    """c = k - 5 is not nonnegative for every k, nor is y_{k+1} = y_k + c tr P^2: that is -5 tr P^2 for k = 1."""
+    t, (k,) = theory("k")
+    c, P = t.scalar("c", nonnegative=True), t.matrix("P", "n", "n", symmetric=True)
+    t.define("c", c, k - number(5))
+    t.assume("P psd", P, "⪰", Zero("n", "n"))
+    t.atom("spectral", Trace(P * P), name="tr PP")
+    y = sequence(t, "y", NONE, lambda y: y + c * Trace(P * P))
+    p, one = Poly({(("c",), ("P",)): 1}, "n", "n"), Poly({((), ()): 1}, "n", "n")
+    square = Positivity(((p,),), (Square(UNIT, ("c",), ((one,),), "P psd"),), (((),),))
+    statement = Equation(y, "≥", ZERO)
+    products = [SignProduct(UNIT, (fact,)) for fact in (NEGATION, HYPOTHESIS, "trace")]
+    signs = Induction(
+        Sign(constant(0), "≥", (SignProduct(UNIT, (NEGATION,)),), ()),
+        Sign(scalar("y'"), "≥", tuple(products), (use("y'", -1),)),
+    )
+    refused(
+        t,
+        Step("c P", Equation(c * P, "⪰", Zero("n", "n")), "positivity", (), Proof(positivity=square), lemma=True),
+        linked(Equation(Trace(c * P * P), "≥", ZERO), "positive", "c P", "P psd", name="trace"),
+        Step("every k", statement, "induction", (), Proof(induction=signs), ("y at the start",), lemma=True),
+        match="stands for another",
+    )
+
+
+# ------------------------------------------------------------------------------------------------ what varies
+def test_a_sequence_that_grows_with_time():
+    """x_k = k c t is not constant in t, which occurs in the integral from 0 to t alone."""
+    t, (_, time, tau, c) = theory("k", "t", "τ", "c")
+    t.atom("integral", c, name="∫ c")
+    x = sequence(t, "x", NONE, lambda x: x + Definite(c, tau, ZERO, time))
+    refused(t, same(Rate(x, time), ZERO), match="derivative of x")
+    refused(t, same(Limit(x, time, Infinity()), x), match="limit of x")
+
+
+def test_a_hypothesis_that_holds_t_through_an_integral():
+    """h = ∫ c over (0, t) is 3 for one t; its limit is not 3."""
+    t, (time, tau, c, h) = theory("t", "τ", "c", "h")
+    t.atom("integral", c, name="∫ c")
+    t.define("h", h, Definite(c, tau, ZERO, time))
+    t.assume("h = 3", h, "=", number(3), case=True)
+    three, poly = number(3), scalar("h") - constant(3)
+    above = sign(Equation(ZERO, "≥", h - three), -poly, [SignProduct(UNIT, (NEGATION,))], [use("h = 3")], "above")
+    below = sign(Equation(ZERO, "≥", three - h), poly, [SignProduct(UNIT, (NEGATION,))], [use("h = 3", -1)], "below")
+    accepted(t, above, below)
+    whole = linked(Equation(Limit(h, time, Infinity()), "=", three), "squeeze", "above", "below", name="limit")
+    refused(t, above, below, whole, match="h = 3, which holds t")
+
+
+@pytest.mark.parametrize("where", ["axis", "circle"])
+def test_a_hypothesis_that_holds_a_frequency_through_a_logarithm(where: str):
+    """g = ln|p(z)| is 5 at one ω; its integral is not that of 5."""
+    t, (s, j, w, i, m, g) = theory("s", "j", "ω", "i", "m", "g")
+    p = Roots(s, t.roots("λ", i, m), i, m)
+    t.atom("spectral", p, name="p")
+    log = Log(Modulus(At(p, s, Product((j, w)) if where == "axis" else ON_CIRCLE)))
+    t.atom("spectral", log, name="ln|p|")
+    t.define("g", g, log)
+    t.assume("g = 5", g, "=", number(5), case=True)
+    for body, name in ((g, "∫ g"), (number(5), "∫ 5")):
+        t.atom("improper", body, name=name)
+    lemma = identity("lemma", g, number(5), scalar("g") - constant(5), use("g = 5"), uses=("g = 5",))
+    accepted(t, lemma)
+    sides = [Definite(body, w, ZERO, Infinity()) for body in (g, number(5))]
+    refused(t, lemma, linked(Equation(sides[0], "=", sides[1]), "same argument", "lemma"), match="g = 5, which holds ω")
+
+
+def test_a_number_is_not_every_s():
+    """tr A = s holds at one s, though a trace occurs in it: h = (s - tr A + 1) p is p there, and |h| is not |p|."""
+    t, (s, j, w, i, m, h) = theory("s", "j", "ω", "i", "m", "h")
+    A = t.matrix("A", "n", "n")
+    p, axis = Roots(s, t.roots("λ", i, m), i, m), Product((j, w))
+    t.atom("spectral", Trace(A), name="tr A")
+    t.atom("spectral", p, name="p")
+    t.define("h", h, s * p - Trace(A) * p + p)
+    t.assume("tr A = s", Trace(A), "=", s, case=True)
+    for f in (h, p):
+        t.atom("spectral", Log(Modulus(At(f, s, axis))), name=f"ln {len(t.declared)}")
+    lemma = identity(
+        "lemma", h, p, scalar("h") - scalar("p"), use("h"), use("tr A = s", -1, "p"), uses=("h", "tr A = s")
+    )
+    accepted(t, lemma)
+    sides = [Log(Modulus(At(f, s, axis))) for f in (h, p)]
+    refused(
+        t, lemma, linked(Equation(sides[0], "=", sides[1]), "same argument", "lemma"), match="tr A = s, which holds s"
+    )
+
+
+def test_a_matrix_that_hides_s():
+    """M = sA is no real matrix: tr M is not constant in s, nor is sI - M the matrix whose roots are numbered."""
+    t, (s,) = theory("s")
+    A, M = t.matrix("A", "n", "n"), t.matrix("M", "n", "n")
+    t.define("M", M, s * A)
+    t.atom("spectral", Trace(M), name="tr M")
+    refused(t, same(Limit(Trace(M), s, Infinity()), Trace(M)), match="M is not declared to be complex")
+    t, (s,) = theory("s")
+    A, M, N = (t.matrix(name, "n", "n") for name in "AMN")
+    t.complex.add("N")
+    t.define("N", N, s * Identity("n") - A)
+    t.define("M", M, 2 * N)
+    t.atom("spectral", Det(M), name="det M")
+    refused(t, same(Det(M), Det(M)), match="M is not declared to be complex")
+
+
+# ------------------------------------------------------------------------------------------------ the number of steps
+def test_the_number_of_steps_is_no_variable_of_integration():
+    t, (k, time, tau) = theory("k", "t", "τ")
+    counting(t)
+    t.atom("integral", time * time, name="∫ t^2")
+    whole = [Definite(x * x, x, ZERO, time) for x in (tau, k)]
+    accepted(t, same(whole[0], whole[0]))
+    refused(t, same(whole[1], whole[0]), match="do not vary continuously")
+
+
+def test_a_recursion_in_which_the_next_member_drops_out():
+    """c + 0 x_{k+1} = k is said of every k, and c is a number."""
+    t, (k, c) = theory("k", "c")
+    free(t)
+    t.recur("goes on", c + NONE * t.symbols["x'"], k)
+    refused(t, same(k, k), match="drops out")
