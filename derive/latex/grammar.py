@@ -34,7 +34,7 @@ from dataclasses import replace
 from derive.latex.macros import Macro, expand
 from derive.latex.products import Products
 from derive.latex.rows import frame
-from derive.latex.syntax import Blank, Digits, Display, Listed, Name, Node, Related, walk
+from derive.latex.syntax import Blank, Cases, Digits, Display, Listed, Name, Node, Plus, Related, Times, walk
 from derive.latex.tokens import Token, Unreadable, sized, tokenise
 
 QUANTIFIERS = frozenset(("all", "any", "each", "every", "for", "as", "when", "if", "with"))
@@ -104,6 +104,8 @@ class Reader(Products):
         token = self.look()
         if not self._separates(token) and token.kind != "end":
             self.fail("an operator, a relation or the end of the formula")
+        if isinstance(_first(node), Cases):
+            raise Unreadable(node.span[0], "a left side in front of the cases", "none")
         for part in walk(node):
             if part == Name("partial"):
                 raise Unreadable(part.span[0], "a derivative such as \\frac{\\partial f}{\\partial x}", "\\partial")
@@ -138,6 +140,13 @@ class Reader(Products):
         if relation.kind != "relation" or (braced and not self.took("}")):
             self.fail("a relation", relation)
         return ":=" if relation.text == "=" else relation.text
+
+
+def _first(node: Node) -> Node:
+    """Return what a statement starts with."""
+    while isinstance(node, Related | Plus | Times):
+        node = next(node.children())
+    return node
 
 
 def _merged(statements: list[Node], words: list[str], commas: list[bool]) -> tuple[tuple[Node, ...], tuple[str, ...]]:

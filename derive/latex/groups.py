@@ -181,7 +181,7 @@ class Groups(Names):
             self.at += 1
         if self.look().kind not in ("row", "finish"):
             token, condition = self.look(), self.relation()
-            if not isinstance(condition, Related):
+            if not isinstance(condition, Related) or condition.sides[0] == Blank():
                 self.fail("a relation as the condition of a case", token)
         while self.look().kind == "word" or self.look().text in (",", ".", ";"):
             self.at += 1

@@ -13,6 +13,7 @@ from derive.latex.tokens import Token, Unreadable
 from derive.latex.vocabulary import BOXES, COLUMNED, LAYOUTS, MATRICES, SIGNS_OF_MULTIPLICATION
 
 SIGNS = frozenset("+-*/") | SIGNS_OF_MULTIPLICATION | {"pm", "mp"}
+STOPS = frozenset((",", ";", ".", ":"))
 CLOSERS = frozenset((")", "]", "\\}", "}"))
 MAX_DEPTH = 20
 OPENING, SEPARATORS = frozenset(("(", "[", "\\{")), frozenset(("break", "column", "wide"))
@@ -198,7 +199,7 @@ def _is_layout(tokens: list[Token], i: int, before: list[Token]) -> bool:
     if name in LAYOUTS:
         return True
     if name == "cases" or name == "dcases" or name == "rcases":
-        return not before or before[-1].kind in ("break", "column", "align", "word", "wide") or before[-1].text in ",;"
+        return not before or before[-1].kind in ("break", "column", "align", "word", "wide") or before[-1].text in STOPS
     if name not in MATRICES:
         raise Unreadable(tokens[i].start, "an environment for formulas", tokens[i].shown())
     return name == "array" and not before and _relates(tokens[i + 1 :])
