@@ -7,7 +7,8 @@ import pytest
 from derive.claim import Verdict
 from derive.decide import decide
 from derive.decide.edits import edits, shape_of, tidy
-from derive.interpret import understand
+from derive.decide.misfit import nearest_fitting
+from derive.interpret import Misfit, understand
 from derive.latex.grammar import read
 from derive.terms import Identity, Neg, Product, Sum, Symbol
 from derive.theory.claims import claim_theory
@@ -117,3 +118,26 @@ def test_what_cancels_is_left_out():
     assert tidy(A.T.T) == tidy(Neg(Neg(A))) == tidy(A.inv.inv) == A
     assert tidy(Product((A, Product((A, Identity("n")))))) == Product((A, A, Identity("n")))
     assert shape_of(Product((A, Symbol("B", "m", "n")))) is None
+
+
+# ------------------------------------------------------------------------------------------------ shapes
+FITTING = [
+    (r"L = A P C (C P C^\top + R)^{-1}", DT, rf"L = A P C^\top {S}", "C' for C"),
+    (r"A P + P A^\top + W - P C V^{-1} C P = 0", KB, r"A P + P A^\top + W - P C^\top V^{-1} C P = 0", "C' for C"),
+    (r"K = C^\top P V^{-1}", KB, r"K = P C^\top V^{-1}", "C' and P swapped"),
+    (r"L_f = P C^\top (C^\top P C + R)^{-1}", DT, rf"L_f = P C^\top {S}", "the two transposes of C' P C exchanged"),
+    (r"L^\top = A P C^\top (C P C^\top + R)^{-1}", DT, rf"L = A P C^\top {S}", "L for L'"),
+]
+
+
+@pytest.mark.parametrize(("latex", "theory", "true", "edit"), FITTING)
+def test_what_fits_instead(latex, theory, true, edit):
+    with pytest.raises(Misfit):
+        statement(latex, theory)
+    nearest, why = nearest_fitting(read(latex), claim_theory(theory))
+    assert (nearest.latex, nearest.edit) == (true, edit)
+    assert ("C leads from the state" in why) == (edit == "C' for C")
+
+
+def test_a_formula_that_fits_and_is_false_is_not_suggested():
+    assert nearest_fitting(read(r"K = P C V"), claim_theory(KB)) is None
