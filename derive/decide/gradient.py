@@ -13,7 +13,7 @@ from derive.derivation import DIRECTION
 from derive.kernel import Certificate, Poly, Rejected, parts, replay
 from derive.matrix.normal import reduced
 from derive.rules import variation
-from derive.terms import Dot, Equation, Gradient, Reading, Symbol, Term, Zero, lower, lower_trace, walk
+from derive.terms import Dot, Equation, Expect, Gradient, Reading, Symbol, Term, Zero, lower, lower_trace, walk
 from derive.theory.claims.base import ClaimTheory
 
 __all__ = ["check_gradient", "dependent", "gradient_claim", "gradient_of", "images", "inner"]
@@ -22,21 +22,30 @@ __all__ = ["check_gradient", "dependent", "gradient_claim", "gradient_of", "imag
 def dependent(gain: str, theory: ClaimTheory) -> frozenset[str]:
     """Return the letters that change with a gain: those that an equation gives by it, or by others that do.
 
-    What holds for the optimal gain only says nothing of that.
+    All letters of an equation between it and others do, if it gives none of them. What holds for the optimal gain only
+    says nothing of that.
     """
-    sides = [
-        (side, other)
-        for name, item in theory.theory.declared.items()
-        if isinstance(item, Declared) and name not in theory.optimal and item.statement.relation in ("=", ":=")
-        for side, other in ((item.statement.lhs, item.statement.rhs), (item.statement.rhs, item.statement.lhs))
-    ]
-    pairs = [(side.body if isinstance(side, Dot) else side, _names(other)) for side, other in sides]
+    pairs: list[tuple[set[str], set[str]]] = []
+    for name, item in theory.theory.declared.items():
+        if isinstance(item, Declared) and name not in theory.optimal and item.statement.relation in ("=", ":="):
+            sides = item.statement.lhs, item.statement.rhs
+            named = [_defined(side) for side in sides]
+            pairs += [({n}, _names(other)) for n, other in zip(named, sides[::-1], strict=True) if n]
+            if not any(named) and not any(isinstance(n, Expect) for side in sides for n in walk(side)):
+                both = _names(sides[0]) | _names(sides[1])
+                pairs.append((both, both))
     found = {gain}
     while True:
-        more = {side.name for side, names in pairs if isinstance(side, Symbol) and names & found}
+        more = {n for names, below in pairs if below & found for n in names}
         if more <= found:
             return frozenset(found - {gain})
         found |= more
+
+
+def _defined(side: Term) -> str:
+    """Return the name of the letter that an equation gives, itself or by its rate; "" if a side is no letter."""
+    side = side.body if isinstance(side, Dot) else side
+    return side.name if isinstance(side, Symbol) else ""
 
 
 def _names(term: Term) -> set[str]:
