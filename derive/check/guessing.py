@@ -57,7 +57,8 @@ def justified(results: Sequence[Result]) -> list[Result]:
     """Return results in which no refutation rests on a guess that nothing confirms.
 
     A guessed theory is confirmed for a claim when other claims of its document, proved from the theory's relations,
-    use all its letters, and when at least as many are proved that way as refuted.
+    use all its letters, and when at least as many are proved that way as refuted. Shapes that do not fit are no ground
+    at all: what is a number in the document may be a matrix in the theory.
     """
     return [_confirmed(r, results) if r.guessed and r.verdict == "refuted" else r for r in results]
 
@@ -66,10 +67,10 @@ def _confirmed(result: Result, results: Sequence[Result]) -> Result:
     mine = [r for r in results if r.guessed and r.claim.file == result.claim.file]
     proved = [r for r in mine if r.verdict == "proved" and r.answer and r.answer.hypotheses_used]
     known = {letter for r in proved for letter in _letters(r)}
-    if _letters(result) <= known and len(proved) >= sum(r.verdict == "refuted" for r in mine):
+    if result.shapes and _letters(result) <= known and len(proved) >= sum(r.verdict == "refuted" for r in mine):
         return result
     key, answer = result.claim.theory, result.answer
-    ground = f": {answer.counterexample}" if answer and answer.counterexample else ""
+    ground = f": {answer.counterexample or ' '.join(answer.notes)}" if answer else ""
     notes = (
         f"in {key}, which is a guess, it would be refuted{ground}",
         f"name the theory to have it decided: theory={key} in a comment of the document, or --theory {key}",

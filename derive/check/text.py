@@ -14,7 +14,12 @@ LONGEST = 300  # characters of one value
 
 def text_report(report: Report) -> str:
     """Return the whole report."""
-    blocks = ["\n".join(_block(result)) for result in report.results]
+    told: set[tuple[str, str]] = set()  # a guess is told once for each file
+    blocks: list[str] = []
+    for result in report.results:
+        guess = (result.claim.file, result.guessed)
+        blocks.append("\n".join(_block(result, "" if guess in told else result.guessed)))
+        told.add(guess)
     return "\n\n".join([*blocks, summary(report)])
 
 
@@ -23,7 +28,7 @@ def summary(report: Report) -> str:
     total, counts = len(report.results), report.counts
     if not total:
         return "no claims"
-    words = [f"{counts[w]} {w}" for w in WORDS if counts[w]]
+    words = [f"{counts[w]} {w}{'s' * (w == ERROR and counts[w] > 1)}" for w in WORDS if counts[w]]
     return f"{total} {'claim' if total == 1 else 'claims'}: {', '.join(words)}"
 
 
@@ -38,14 +43,14 @@ def complaints(report: Report) -> list[str]:
     return [*report.errors, f"{place}{first.message}{more}"]
 
 
-def _block(result: Result) -> Iterator[str]:
+def _block(result: Result, guessed: str) -> Iterator[str]:
     yield _head(result)
     if result.verdict == ERROR:
         yield from (f"    {line}" for line in result.excerpt.split("\n") if result.excerpt)
         return
     yield from _row("read as", result.read_as)
     yield from _row("shapes", ", ".join(f"{name}: {shape}" for name, shape in result.shapes.items()))
-    yield from _row("guessed", result.guessed)
+    yield from _row("guessed", guessed)
     if result.answer:
         yield from _reasons(result.answer)
 

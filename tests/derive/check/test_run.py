@@ -157,6 +157,19 @@ def test_what_confirms_a_guess(proved, verdict):
     assert justified([*proved, result("x", "refuted", ["L", "P"])])[-1].verdict == verdict
 
 
+def test_shapes_that_do_not_fit_a_guess_refute_nothing():
+    told = Answer(Verdict.refuted, "types", notes=("shapes: C is l×n",))
+    misfit = Result(Claim("x", "luenberger-dt", file="n.md"), "refuted", told, guessed="letters")
+    found = justified([result("y", "proved", ["L", "P"], ("gain",)), misfit])[-1]
+    assert found.verdict == "undecided"
+    assert "would be refuted: shapes: C is l×n" in found.answer.notes[0]
+
+
+def test_a_guess_is_told_once_for_each_file():
+    results = [result("x", "proved", ["L"]), result("y", "proved", ["L"]), result("z", "proved", ["L"], file="o.md")]
+    assert str(Report(tuple(results))).count("guessed  letters") == 2
+
+
 def test_a_named_theory_needs_no_confirmation():
     (found,) = justified([result("x", "refuted", ["L"], guessed="")])
     assert found.verdict == "refuted"
