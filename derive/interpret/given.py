@@ -41,7 +41,7 @@ def extended(theory: ClaimTheory, given: Given, reader: Reader) -> tuple[ClaimTh
         if reader.scalar or equation.relation not in OF_MATRICES or is_scalar(equation):
             conditions.append(equation)
         else:
-            _declare(names[-1], equation, defines, made)
+            _declare(names[-1], equation, defines, made, theory.optimal)
     kept = {k: v for k, v in theory.proved_by.items() if k in made.declared}
     optimal, found = theory.optimal & made.declared.keys(), (*theory.conditions, *conditions)
     claims = replace(theory, theory=made, optimal=optimal, proved_by=kept, conditions=found)
@@ -72,11 +72,11 @@ def _add_letters(made: Theory, theory: ClaimTheory, equation: Equation) -> None:
             add_indexed(made, letters, symbol.name)
 
 
-def _declare(name: str, equation: Equation, defines: bool, made: Theory) -> None:
+def _declare(name: str, equation: Equation, defines: bool, made: Theory, optimal: frozenset[str]) -> None:
     if defines:
         made.define(name, equation.lhs, equation.rhs, "given")
         return
-    for old in overridden(equation, made):
+    for old in overridden(equation, made, optimal):
         del made.declared[old]
     made.assume(name, equation.lhs, equation.relation, equation.rhs, "given")
 
@@ -163,20 +163,20 @@ def _fresh(name: str, made: Theory) -> str:
     return name
 
 
-def overridden(equation: Equation, theory: Theory) -> list[str]:
+def overridden(equation: Equation, theory: Theory, optimal: frozenset[str]) -> list[str]:
     """Return the declarations that a given equation takes the place of.
 
-    These are the definition of the same letter, moment or rate, and what was assumed of the letter's optimum. An
-    equation that a letter solves (P in the Riccati equation) stays.
+    These are the definition of the same letter, moment or rate; of a gain, also what was said of its optimum. An
+    equation that a letter solves (P in the Riccati equation) stays, and so does what defines a letter that is given a
+    value without letters: W = 0 is a special case, L = 0 another gain.
     """
-    lhs = equation.lhs
-    defines = equation.relation == "=" and isinstance(lhs, (Symbol, Dot, Expect)) and not occurs(lhs, equation.rhs)
-    if not defines:
+    lhs, names = equation.lhs, [n for n in walk(equation.rhs) if isinstance(n, Symbol)]
+    if equation.relation != "=" or not isinstance(lhs, (Symbol, Dot, Expect)) or occurs(lhs, equation.rhs):
         return []
     found = [
         name for name, item in theory.declared.items()
         if isinstance(item, Declared) and item.statement.relation in ("=", ":=") and _same(item.statement.lhs, lhs)
-        and not occurs(lhs, item.statement.rhs)
+        and not occurs(lhs, item.statement.rhs) and (names or name in optimal)
     ]  # fmt: skip
     cases = [
         name for name, item in theory.declared.items()

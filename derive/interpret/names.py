@@ -31,18 +31,18 @@ def spell(name: Name, notation: Mapping[str, str]) -> str:
     """
     letter = LETTERS.get(name.letter, name.letter)
     accents = [SAME.get(a, a) for a in name.accents if a not in DOT]
-    marks = (f"_{tidy(name.sub)}" if name.sub else "") + (f"^{tidy(name.sup)}" if name.sup else "")
-    plain = " ".join([*accents, letter])
-    if not notation:
-        return plain + marks
-    if plain + marks in notation:
-        return notation[plain + marks]
+    plain, sub, sup = " ".join([*accents, letter]), tidy(name.sub), tidy(name.sup)
+    full = plain + (f"_{sub}" if sub else "") + (f"^{sup}" if sup else "")
+    if full in notation or not notation:
+        return notation.get(full, full)
     if plain not in notation and letter not in notation:
         _check_free(plain, notation)
-        return plain + marks
-    base = notation[plain] if plain in notation else " ".join([*accents, notation[letter]])
-    joined = base + (marks.replace("_", ",", 1) if "_" in base and marks.startswith("_") else marks)
-    return joined
+        return full
+    role = notation[plain] if plain in notation else " ".join([*accents, notation[letter]])
+    head, _, own = role.partition("^")
+    sub = f",{sub}" if sub and "_" in head else f"_{sub}" if sub else ""
+    sup = sup or own
+    return head + sub + (f"^{sup}" if sup else "")
 
 
 def _check_free(letter: str, notation: Mapping[str, str]) -> None:

@@ -163,3 +163,19 @@ def test_where_state_and_output_are_1_everything_commutes(given: list[str]):
 def test_where_all_dimensions_are_1_detectability_is_in_force():
     assert "A - K C Hurwitz" in meant(KB, "A < 0", ["C = 0"], scalar=True).theory.theory.declared
     assert "A - K C Hurwitz" not in meant(KB, "A C^T = C^T").theory.theory.declared
+
+
+def test_a_value_of_a_defined_letter_is_a_special_case():
+    assert {"N", "N = 0"} <= meant(OB, "L = 0", ["N = 0"]).theory.theory.declared.keys()
+    assert "N" not in meant(OB, "L = 0", [r"N = B_d S_{dd} D_d^T"]).theory.theory.declared
+
+
+def test_a_value_of_a_gain_is_another_gain():
+    assert "gain" not in meant(DT, "P_k = A P_{k-1} A^T + Q", ["L_k = 0"]).theory.theory.declared
+
+
+def test_a_rate_of_zero_is_the_steady_state():
+    found = meant(KB, r"\dot P = A P", [r"\dot P = 0"])
+    (given,) = found.assumed
+    assert {"P(t)", given} <= found.theory.theory.declared.keys()
+    assert given in found.theory.reading.context.relations
