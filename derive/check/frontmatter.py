@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import pairwise
 
 from derive.errors import InputError
 
@@ -46,7 +47,7 @@ def split_front_matter(text: str) -> tuple[dict[str, Node], int]:
     found: dict[str, Node] = {}
     lines = head["body"].split("\n")
     starts = [i for i, line in enumerate(lines) if TOP.match(line)]
-    for start, stop in zip(starts, [*starts[1:], len(lines)], strict=True):
+    for start, stop in pairwise([*starts, len(lines)]):
         key = TOP.match(lines[start])
         if key and key["key"] in ("derive", "math"):
             value = yaml_subset("\n".join(lines[start:stop]), start + 2)
