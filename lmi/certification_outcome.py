@@ -43,14 +43,15 @@ class CertificateOutcome:
 
         return None if self.certified is None else certificate_dict(self.certified.certificate)
 
-    def line(self) -> str:
-        """Return one line for the report."""
+    def line(self, weighted: bool) -> str:
+        """Return one line for the report, about tr(M P) where there is a weight."""
         if self.certified is None:
             return f"no certificate: {self.status}"
         from lmi.certificate_report import above
 
-        lower, width = above(self.certified.bounds.trace)
-        return f"certified: {lower} <= tr P <= that + {width}"
+        bounds = self.certified.bounds
+        lower, width = above(bounds.cost if weighted else bounds.trace)
+        return f"certified: {lower} <= {'tr(MP)' if weighted else 'tr P'} <= that + {width}"
 
 
 def attempt_certificate(plant: Plant) -> CertificateOutcome:

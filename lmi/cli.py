@@ -114,10 +114,14 @@ def _certified_file(file: str, plant: str | None) -> tuple[list[str], int]:
 
 
 def _certified_gain(plant: str | None, gain: str | None, output: str | None) -> tuple[list[str], int]:
+    from rich.console import Console
+
     from lmi.certification_command import as_plant, certify_gain, read_gain
 
     loaded = as_plant(plant or "")
-    return certify_gain(loaded, read_gain(gain or "", loaded), output)
+    matrix = read_gain(gain or "", loaded)
+    with Console(stderr=True).status("certificate"):  # shows nothing unless standard error is a terminal
+        return certify_gain(loaded, matrix, output)
 
 
 def main() -> NoReturn:

@@ -28,7 +28,7 @@ def print_table(validation: Validation, file: TextIO | None = None) -> None:
     for route in validation.routes:
         if ":" in route.status:
             console.print(Text(f"{route.name}: {route.status}"), soft_wrap=True)
-    for line in (*proved_lines(validation), validation.certificate.line()):
+    for line in (*proved_lines(validation), validation.certificate.line(_weighted(validation))):
         console.print(Text(line), soft_wrap=True)
     said = fill(verdict_line(validation), WIDTH, subsequent_indent="  ", break_on_hyphens=False)
     console.print(Text(said, style=STYLES[validation.verdict]), soft_wrap=True)

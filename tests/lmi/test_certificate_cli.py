@@ -352,6 +352,10 @@ def test_a_validation_writes_its_certificate_and_carries_it(folder, monkeypatch)
         assert again.exit_code == 0, again.output
     text = invoke("validate", folder / "plant.toml")
     assert "certified: 0.39987059778302026492197527464" in text.stdout
+    (folder / "plant.toml").write_text(PLANT + "M = [[0.0, 0.0], [0.0, 2.0]]\n")
+    text = invoke("validate", folder / "plant.toml")
+    assert "certified: 0.72453509221322316333655520886" in text.stdout  # twice the second variance
+    assert "<= tr(MP) <= that + " in text.stdout
 
 
 def test_a_validation_without_certificate_is_unconfirmed(folder, monkeypatch):
