@@ -20,8 +20,8 @@ PIECES = [
     "``", "<!--", "-->", "%%", "%", "derive: ", "given", "claim", "skip", "theory=lqr-ct", "assume=", "> ", "- ",
     "    ", "\t", "\\begin{align}", "\\end{align}", "\\begin{aligned}", "\\end{aligned}", "\\begin{equation*}",
     "\\end{equation*}", "\\\\", "&", "=", "+", "P", "Q", "{", "}", "\\", "\\label{a}", "\\tag{1}", "(1)", "{#eq:a}",
-    "^b", "(a)=", "<pre>", "</pre>", "\\verb|", "|", "\\iffalse", "\\fi", "\\begin{verbatim}", "\\end{verbatim}", "---\n",
-    "derive:\n", ":label: x\n", "é", "\0", "\\newcommand{\\a}{b}", "\\def\\a{",
+    "^b", "(a)=", "<pre>", "</pre>", "\\verb|", "|", "\\iffalse", "\\fi", "\\begin{verbatim}", "\\end{verbatim}",
+    "---\n", "derive:\n", ":label: x\n", "é", "\0", "\\newcommand{\\a}{b}", "\\def\\a{",
 ]  # fmt: skip
 TEXTS = st.lists(st.sampled_from(PIECES), max_size=40).map("".join)
 
