@@ -17,6 +17,7 @@ from derive.decide.spectra.numbers import NoValue
 from derive.decide.spectra.places import decided, places
 from derive.decide.spectra.ratio import Fractional, Undefined
 from derive.decide.spectra.theorems import STEPS, prove_by_theorems
+from derive.functions import Definite
 from derive.interpret.statement import Statement
 from derive.kernel import Rejected
 from derive.latex import latex
@@ -32,6 +33,11 @@ MOST, ENOUGH = 80, 5  # plants that are tried; plants at which all is enclosed b
 DIGITS = 12
 SHOWN = ("A", "C", "W", "V", "B", "P")
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1))
+EDITS = {Fraction(2): "a factor 2", Fraction(1, 2): "a factor 1/2", Fraction(-1): "the sign"}
+ONE_SIDED = (
+    "The spectrum is two-sided: the integral runs over all frequencies, with the factor 1/(2π); over positive "
+    "frequencies alone it is half as large."
+)
 
 
 @dataclass(frozen=True)
@@ -108,9 +114,12 @@ def tried(statement: Statement, deadline: float) -> Trial:
 def _refuted(statement: Statement, failure: tuple[Place, Equation, str], deadline: float) -> Answer:
     place, equation, reason = failure
     example = _example(place, equation, reason)
-    found = next(_repaired(statement, equation, deadline), None) if not reason else None
+    found, note = next(_repaired(statement, equation, deadline), (None, "")) if not reason else (None, "")
     index = statement.equations.index(equation)
-    notes = (f"its relation number {index + 1} fails",) if len(statement.equations) > 1 else ()
+    notes = (
+        *([f"its relation number {index + 1} fails"] if len(statement.equations) > 1 else []),
+        *filter(None, [note]),
+    )
     return Answer(
         Verdict.refuted,
         "undefined" if reason else "exact instance",
@@ -156,8 +165,8 @@ def _number(x: Any) -> str:
     return str(x.str(DIGITS, radius=False))
 
 
-def _repaired(statement: Statement, failed: Equation, deadline: float) -> Iterator[Nearest]:
-    """Iterate over true formulas that differ from a false one by a factor or a sign of one addend."""
+def _repaired(statement: Statement, failed: Equation, deadline: float) -> Iterator[tuple[Nearest, str]]:
+    """Iterate over true formulas that differ by a factor or a sign of one addend, with what explains the slip."""
     for side in ("rhs", "lhs"):
         term: Term = getattr(failed, side)
         addends = term.addends if isinstance(term, Sum) else (term,)
@@ -168,8 +177,9 @@ def _repaired(statement: Statement, failed: Equation, deadline: float) -> Iterat
                 equations = tuple(repaired if e is failed else e for e in statement.equations)
                 trial = replace(statement, equations=equations)
                 if time.monotonic() < deadline and tried(trial, deadline).failure is None and prove_by_theorems(trial):
-                    what = {-1: "the sign", 2: "a factor 2", Fraction(1, 2): "a factor 1/2"}[factor]
-                    yield Nearest(", \\quad ".join(map(latex, equations)), f"{what} of one term")
+                    formula = ", \\quad ".join(map(latex, equations))
+                    note = ONE_SIDED if factor > 0 and any(isinstance(n, Definite) for n in walk(addend)) else ""
+                    yield Nearest(formula, f"{EDITS[factor]} of one term"), note
 
 
 def _scaled(term: Term, factor: Fraction) -> Term:

@@ -106,6 +106,13 @@ def test_the_nearest_formula_is_proved_and_named() -> None:
     assert answer(found.nearest.latex).verdict is Verdict.proved
 
 
+def test_a_one_sided_integral_is_explained() -> None:
+    found = answer(f"{COST} = {MEAN.replace('2', '', 1)} + 2 {SUM}")
+    assert found.nearest is not None
+    assert found.nearest.edit == "a factor 1/2 of one term"
+    assert any("two-sided" in note for note in found.notes)
+
+
 def test_a_vanishing_eigenvalue_makes_a_bound_undefined() -> None:
     bound = rf"\operatorname{{tr}} P \ge \frac{{1}}{{\overline{{\lambda}}(C^T V^{{-1}} C)}} {COST}"
     found = answer(bound)
