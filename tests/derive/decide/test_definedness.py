@@ -12,7 +12,7 @@ from derive.decide.ground import Introduced, Lemma, accept, generic
 from derive.decide.obligations import invert
 from derive.decide.workspace import Workspace, proof_reading
 from derive.kernel import Poly, Rejected, identity
-from derive.rules import Positivity, Square
+from derive.rules import Fact, Positivity, Square
 from tests.derive.decide.reading import DT, KB, answer, statement
 
 UNDEFINED = [
@@ -124,6 +124,8 @@ def test_generic_points():
         assert generic(matrix, "s", context, inverses)
     for matrix in (A.scale(1, ("s",)), A * F, F, A + F, letter("Phi_y(s)", "l", "l"), Poly({}, "m", "m")):
         assert not generic(matrix, "s", context, inverses)
+    known = replace(context, facts={**context.facts, "F": Fact("invertible", ((F,),))})
+    assert not generic(F + F * F, "s", known, inverses)
     assert not generic(one.scale(1, ("s",)) - A, "z", context, inverses)
     context = replace(context, relations={**context.relations, "s = 1": one.scale(1, ("s",)) - one})
     assert not generic(one.scale(1, ("s",)) - A, "s", context, inverses)
