@@ -38,6 +38,9 @@ PRECISIONS = (320, 640, 1280)
 RATE_BITS = 100
 """The boundary modes of a strong solution are moved inside by 2^-100."""
 
+SHORT_BITS = 20
+"""Bits to which a P* on the boundary is rounded, to meet one whose numbers are short."""
+
 LARGEST = 200
 """States up to which a certificate is made."""
 
@@ -177,7 +180,8 @@ def _from_strong(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int
 def _from_gain(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int) -> list[Certificate]:
     """Let Kleinman's iteration fall from the covariance of a stabilising gain.
 
-    Where it does not settle, its last iterate still bounds P* from above, and 0 bounds it from below.
+    Where it does not settle, its last iterate still bounds P* from above, and from below either P* itself, if its
+    numbers are short, or 0.
     """
     with working_bits(bits):
         frame = Frame.of(plant, Equation.of(plant))
@@ -187,8 +191,8 @@ def _from_gain(plant: Plant, fixed: ExactPlant, given: Exact | None, bits: int) 
         frame, grid = Frame.of(plant, equation), Grid.of(equation.scaling)
         L = given or grid.gain(frame.gain(P), bits // 2)
         P_up, X = _upper(frame, grid, L)
-        P_lo = _lower(equation, grid, P) if settled else _zero(fixed)
-    return [Certificate(fixed, P_lo, P_up, X, L)]
+        below = [_lower(equation, grid, P)] if settled else [grid.covariance(P, SHORT_BITS), _zero(fixed)]
+    return [Certificate(fixed, P_lo, P_up, X, L) for P_lo in below]
 
 
 def _zero(fixed: ExactPlant) -> Exact:

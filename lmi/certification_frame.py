@@ -98,10 +98,10 @@ class Grid:
 
 
 def _integer(x: arb, bits: int) -> int:
-    """Return the middle of x times 2^bits, rounded down."""
+    """Return the middle of x times 2^bits, rounded to the nearest integer."""
     man, exp = x.mid().man_exp()
     shift = int(exp) + bits
-    return int(man) << shift if shift >= 0 else int(man) >> -shift
+    return int(man) << shift if shift >= 0 else (int(man) + (1 << (-shift - 1))) >> -shift
 
 
 def _shifted(x: int | Fraction, bits: int) -> Fraction:

@@ -107,6 +107,16 @@ def test_boundary_modes_fed_by_others_and_seen_through_them(time):
     assert float(bounds.trace.lower) == pytest.approx(np.trace(P), rel=1e-7)
 
 
+def test_a_strong_solution_of_short_numbers_is_met_exactly_where_the_noise_is_no_covariance():
+    A, ones = np.array([[3.0, 4.0], [1.0, 2.0]]), np.ones((1, 2))
+    W = np.array([[-11.0, -5.0], [-5.0, -2.0]])
+    plant = Plant(time="continuous", A=A, C=ones, W=W, V=np.eye(1), N=np.zeros((2, 1)), M=np.eye(2))
+    certificate, bounds = certified(plant)  # CAREX, example 2.5 with epsilon = 0: P* = [[2, 1], [1, 1]]
+    assert certificate.P_lo.equals(Exact.of([[2, 1], [1, 1]]))
+    assert bounds.trace.lower == 3 < bounds.trace.upper < 3 + Fraction(1, 10**20)
+    assert not bounds.is_covariance
+
+
 def test_a_rotation_in_doubles_is_not_on_the_circle_and_its_certificate_knows():
     _, bounds = certified(STRONG["rotation"][0])
     assert 1e-16 < float(bounds.trace.lower) <= float(bounds.trace.upper) < 2e-16
