@@ -114,6 +114,8 @@ class Names(Cursor):
             self.at += 1
             return "-"
         self._one_digit(start, "^")
+        if start.kind == "delimiter":
+            self.fail("an exponent in braces")
         power = self.argument()
         shape = _mark_of(power)
         special = self._special(shape, start) if shape else None

@@ -197,7 +197,7 @@ class Operators(Operands):
     def at_differential(self, first: bool = False) -> bool:
         r"""Return whether a differential stands here: d tau, \mathrm d tau, {\rm d} tau.
 
-        It is none if its letter is applied or raised, unless it comes first behind the sign.
+        It is none if its letter is raised, nor if it is applied, unless it comes first behind the sign.
         """
         i = self._behind_d(self.at)
         if i is None:
@@ -206,7 +206,7 @@ class Operators(Operands):
         if variable.kind != "letter" or (variable.text == "d" and after.kind == "letter"):
             return False
         applied = after.text == "(" and variable.text not in MOMENTS
-        return first or not (applied or after.text in ("^", "'"))
+        return after.text not in ("^", "'") and (first or not applied)
 
     def _behind_d(self, at: int) -> int | None:
         """Return the place behind a d of a differential, or None."""
@@ -287,7 +287,7 @@ class Operators(Operands):
     def _over_differential(self) -> bool:
         """Return whether the fraction that starts here has a d below, so that it is a derivative."""
         depth, i = 0, self.at
-        while i < len(self.tokens) - 1 and i < self.at + 200:
+        while i < len(self.tokens) - 1:
             depth += {"{": 1, "}": -1}.get(self.tokens[i].text, 0) if self.tokens[i].kind == "sign" else 0
             i += 1
             if not depth:

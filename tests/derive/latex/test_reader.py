@@ -205,6 +205,11 @@ SPELLED = {
     r"\operatorname{str} L(s)": r"s \operatorname{tr}(L(s))",
     r"||x|| + \lvert y\rvert": r"\left\| x \right\| + \left| y \right|",
     r"x \in [0, T)": r"x \in [0, T)",
+    r"\int d r^2 \, dt": r"\int d \cdot r^{2} \, d t",
+    r"p(x|y) = \delta(x)": r"p(x \mid y) = \delta(x)",
+    r"\rho(A - L C) < 1": r"\rho(A - L C) < 1",
+    r"\int_0^t dt": r"\int_{0}^{t} 1 \, d t",
+    r"a = b: c = d": r"a = b ;\quad c = d",
     r"\underset{L}{\min} J(L_1, L_2)": r"\min_{L} J(L_{1}, L_{2})",
 }
 
