@@ -27,7 +27,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
 from derive.errors import InputError
-from lmi.certificate_arithmetic import Exact, is_definite, is_semidefinite, symmetric_block
+from lmi.certificate_arithmetic import Exact, TooLargeError, is_definite, is_semidefinite, symmetric_block
 
 if TYPE_CHECKING:
     from derive.numeric.plant import Plant
@@ -163,13 +163,14 @@ class Bounds:
         trace: tr P.
         variances: the diagonal of P.
         cost: tr(M P).
-        is_covariance: whether [[W, N], [N', V]] >= 0 exactly, so that P is a covariance and no variance is negative.
+        is_covariance: whether [[W, N], [N', V]] >= 0 exactly, so that P is a covariance and no variance is negative;
+            None when that takes too long to decide.
     """
 
     trace: Interval
     variances: tuple[Interval, ...]
     cost: Interval
-    is_covariance: bool
+    is_covariance: bool | None
 
 
 def exact_plant(plant: "Plant") -> ExactPlant:
@@ -200,14 +201,21 @@ def verify(certificate: Certificate) -> tuple[tuple[Check, ...], Bounds | None]:
 
 def _bounds(certificate: Certificate) -> Bounds:
     plant, P_lo, P_up = certificate.plant, certificate.P_lo, certificate.P_up
-    is_covariance = is_semidefinite(symmetric_block(plant.W, plant.N, plant.V))
+    is_covariance = _semidefinite_if_known(symmetric_block(plant.W, plant.N, plant.V))
     floor = [max(P_lo[i, i], Fraction(0)) if is_covariance else P_lo[i, i] for i in range(plant.n)]
     variances = tuple(Interval(low, P_up[i, i]) for i, low in enumerate(floor))
     trace = Interval(sum(floor, Fraction(0)), sum((x.upper for x in variances), Fraction(0)))
     return Bounds(trace, variances, _cost(certificate, is_covariance), is_covariance)
 
 
-def _cost(certificate: Certificate, is_covariance: bool) -> Interval:
+def _semidefinite_if_known(M: Exact) -> bool | None:
+    try:
+        return is_semidefinite(M)
+    except TooLargeError:
+        return None
+
+
+def _cost(certificate: Certificate, is_covariance: bool | None) -> Interval:
     """Bound tr(M P) where P_lo <= P <= P_up.
 
     M >= 0 gives tr(M P_lo) <= tr(M P) <= tr(M P_up). Where only M + d I >= 0, both move outwards by d tr(P_up - P_lo).
@@ -222,9 +230,9 @@ def _cost(certificate: Certificate, is_covariance: bool) -> Interval:
 
 def _shift(M: Exact) -> Fraction:
     """Return a d >= 0 with M + d I >= 0, tiny where M is semidefinite but for rounding."""
-    if is_semidefinite(M):
+    if _semidefinite_if_known(M):
         return Fraction(0)
     size = max(sum((abs(M[i, j]) for j in range(M.shape[1])), Fraction(0)) for i in range(M.shape[0]))
     identity = Exact.identity(M.shape[0])
     tried = (size / (1 << bits) for bits in WEIGHT_SHIFTS)
-    return next((d for d in tried if is_semidefinite(M + identity * d)), size)
+    return next((d for d in tried if _semidefinite_if_known(M + identity * d)), size)

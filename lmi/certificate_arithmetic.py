@@ -16,8 +16,8 @@ __all__ = ["Exact", "TooLargeError", "is_definite", "is_semidefinite", "symmetri
 
 Table = list[list[int]]
 
-WORK = 2 * 10**10
-"""Largest (rows)^4 times bits for which elimination is begun: about a minute."""
+WORK = 5 * 10**9
+"""Entries times bits that an elimination may go through: about a minute."""
 
 CONGRUENCE_BITS = 53
 """Bits of the congruence that floating point suggests."""
@@ -143,10 +143,7 @@ def _pivots(a: Table, strict: bool) -> bool:
     Raises:
         TooLargeError: it would take too long.
     """
-    bits = max(abs(x) for row in a for x in row).bit_length()
-    if len(a) ** 4 * bits > WORK:
-        raise TooLargeError(f"a matrix of {len(a)} rows and {bits} bits is too large to decide its sign")
-    a, before = [row[: i + 1] for i, row in enumerate(a)], 1
+    a, before, work = [row[: i + 1] for i, row in enumerate(a)], 1, 0
     for k in range(len(a)):
         pivot = a[k][k]
         column = [a[i][k] for i in range(k + 1, len(a))]
@@ -154,6 +151,9 @@ def _pivots(a: Table, strict: bool) -> bool:
             return False
         if pivot == 0:
             continue
+        work += len(column) ** 2 * pivot.bit_length()
+        if work > WORK:
+            raise TooLargeError(f"a matrix of {len(a)} rows takes too long to decide whether it is semidefinite")
         for i, x in enumerate(column, start=k + 1):
             row = a[i]
             for j, y in enumerate(column[: i - k], start=k + 1):

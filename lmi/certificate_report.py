@@ -24,7 +24,9 @@ def proved_lines(certificate: Certificate, bounds: Bounds) -> Iterator[str]:
     """Iterate over the lines that report a verified certificate."""
     plant = certificate.plant
     yield f"{plant.time} time, states {plant.n}, outputs {plant.l}: every inequality holds, decided in integers"
-    if not bounds.is_covariance:
+    if bounds.is_covariance is None:
+        yield "the noise matrix is too large to decide whether it is semidefinite, and P a covariance"
+    elif not bounds.is_covariance:
         yield "the noise matrix is not exactly semidefinite: P is the greatest Riccati solution, and no covariance"
     yield f"{'':8}{'every stabilising gain, at least':36}{'this gain, at most'}"
     named = [("tr P", bounds.trace), ("tr MP", bounds.cost)]

@@ -6,11 +6,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+import lmi.certificate_arithmetic as arithmetic
 from derive.errors import InputError
 from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi.certificate import Certificate, ExactPlant, exact_plant, verify
 from lmi.certificate_arithmetic import Exact, TooLargeError
+from lmi.certificate_report import proved_lines
 from lmi.certificate_stability import proved_unstable, stabilises
 from lmi.certification import certified
 
@@ -221,6 +223,21 @@ def test_noise_that_is_not_semidefinite_is_said_to_be():
     assert found.bounds.is_covariance
     assert bounds is not None, checks
     assert not bounds.is_covariance
+
+
+def test_what_takes_too_long_beside_the_inequalities_is_said_and_costs_width_only(monkeypatch):
+    low = np.array([[1.0, 1.0], [1.0, 1.0]])
+    data = {"time": "discrete", "A": [[0.5, 1], [0, 0.5]], "C": [[1, 0]], "W": low, "V": 1, "M": low}
+    certificate, known = certified(plant_from_mapping(data))
+    assert known.is_covariance
+    monkeypatch.setattr(arithmetic, "WORK", 0)
+    _, bounds = verify(certificate)
+    assert bounds is not None
+    assert bounds.is_covariance is None
+    assert bounds.trace == known.trace
+    assert bounds.cost.lower < known.cost.lower < known.cost.upper < bounds.cost.upper
+    assert bounds.cost.width < 2 * known.cost.width
+    assert "too large to decide" in list(proved_lines(certificate, bounds))[1]
 
 
 def test_what_is_no_covariance_may_be_negative():

@@ -103,7 +103,8 @@ def test_what_takes_too_long_is_not_begun(monkeypatch):
     monkeypatch.setattr(arithmetic, "WORK", 10)
     assert is_definite(exact([[2, 1], [1, 2]]))  # by the congruence
     with pytest.raises(TooLargeError, match="2 rows"):
-        is_semidefinite(exact([[1, 1], [1, 1]]))
+        is_semidefinite(exact([[2**20, 2**20], [2**20, 2**20]]))
+    assert is_semidefinite(exact([[0, 0], [0, 0]]))
 
 
 def test_products_sums_and_traces_are_those_of_fractions():
