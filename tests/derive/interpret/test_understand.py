@@ -214,6 +214,7 @@ def test_where_all_dimensions_are_1_everything_is_a_number():
         (r"P = 2^{-1}", "Number"),
         (r"P = \operatorname{tr}(A)", "Symbol"),
         (r"P = \Re[A]", "Symbol"),
+        (r"P = \sum_{i=1}^m \Re[\lambda_i(A)]", "Symbol"),
         (r"P = A^T", "Symbol"),
         (r"P = I", "Number"),
     ],
@@ -222,6 +223,11 @@ def test_functions_of_numbers(latex: str, rhs: str):
     (equation,) = meant(KB, latex, scalar=True).equations
     side = equation.rhs if equation.relation == "=" else equation.lhs
     assert type(side).__name__ == rhs
+
+
+def test_the_only_eigenvalue_is_the_number_itself():
+    (equation,) = meant(KB, r"P = \sum_{i=1}^m \max\{0, \Re[\lambda_i(A)]\}", scalar=True).equations
+    assert equation.rhs == Max(meant(KB, "A = 0", scalar=True).symbols[0])
 
 
 def test_max_of_two_numbers():

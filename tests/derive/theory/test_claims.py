@@ -143,7 +143,9 @@ WAYS = (lambda t: t, at_t, over_first, earlier, later, later_noise)
 
 def follows(statement: Equation, by: tuple[str, ...], reading: Reading) -> bool:
     """Tell whether a statement is declared in a lecture, or follows from its named steps and inverses."""
-    relations, facts = reading.context.relations, reading.context.facts
+    cases = reading.real.cases
+    relations = {n: r for n, r in reading.context.relations.items() if n not in cases or n in by}
+    facts = {n: f for n, f in reading.context.facts.items() if n not in cases}
     lhs = lower(statement.lhs, reading)
     if statement.relation in ("⪰", "≻"):
         kinds = ("psd", "pd") if statement.relation == "⪰" else ("pd",)
@@ -245,6 +247,28 @@ def test_cross_covariance_of_the_filter_is_declared_in_the_lecture_on_its_spectr
                 renamed(item.statement.lhs, letters, made), "=", renamed(item.statement.rhs, letters, made)
             )
             assert found == wanted.statement
+
+
+def test_with_a_cross_covariance_the_noises_are_correlated():
+    claims = claim_theory("luenberger-dt").about({"S", "w_k", "v_k"})
+    item = claims.theory.declared["w and v at k"]
+    assert isinstance(item, Declared)
+    assert item.statement.rhs == claims.theory.symbols["S"]
+
+
+@pytest.mark.parametrize(
+    ("key", "optimal"),
+    [
+        ("observer-ct", {"optimal gain"}),
+        ("covariance-ct", set()),
+        ("kalman-bucy", {"steady gain", "gain at t"}),
+        ("luenberger-dt", {"steady gain", "gain"}),
+        ("lqr-ct", {"steady gain", "gain at t", "u = -K x"}),
+        ("lqr-dt", {"steady gain", "optimal gain at k-1", "u_{k-1} = -K x"}),
+    ],
+)
+def test_what_holds_for_the_optimal_gain_only_is_marked(key: str, optimal: set[str]):
+    assert claim_theory(key).optimal == optimal
 
 
 def test_what_bears_on_a_claim_is_small():
