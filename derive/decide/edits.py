@@ -24,6 +24,7 @@ from derive.terms import (
     Sum,
     Symbol,
     Term,
+    Trace,
     Transpose,
     Zero,
     walk,
@@ -72,6 +73,9 @@ def shape_of(term: Term) -> Shape | None:
         case Inverse(body):
             found = shape_of(body)
             return found if found and found[0] == found[1] else None
+        case Trace(body):
+            found = shape_of(body)
+            return ("", "") if found and found[0] == found[1] else None
         case Sum(addends):
             shapes = {shape_of(a) for a in addends}
             return shapes.pop() if len(shapes) == 1 else None

@@ -36,6 +36,9 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
             for side in (equation.lhs, equation.rhs):
                 justify(side, work)
         polys = [p for e in statement.equations for p in polynomials(e, work)]
+        if not satisfiable(statement, polys):
+            return _vacuous(statement, work)
+        proof, failed = _prove(statement, work)
     except Undefined as found:
         return _undefined(found, statement)
     except Unjustified:
@@ -43,9 +46,6 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
         return _refute_where_defined(statement, work.left) or _undecided(statement, note)
     except (Rejected, AssertionError) as error:
         return _undecided(statement, str(error))
-    if not satisfiable(statement, polys):
-        return _vacuous(statement, work)
-    proof, failed = _prove(statement, work)
     if failed is not None:
         return failed
     if proof is None:
@@ -79,24 +79,20 @@ def _refuted(statement: Statement, number: int, found: Counterexample) -> Answer
 def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
     """Tell whether a statement is proved, its hypotheses satisfiable; nothing is refuted."""
     work = Workspace(statement.theory, time.monotonic() + seconds, statement.equations)
+    parts: list[Part] = []
     try:
         justify_given(work)
         for equation in statement.equations:
             for side in (equation.lhs, equation.rhs):
                 justify(side, work, refuting=False)
         polys = [p for e in statement.equations for p in polynomials(e, work)]
+        for equation in statement.equations:
+            part = prove_equation(oriented(equation, work.reading), work)
+            if part is None:
+                return False
+            parts.append(part)
+        replayed(statement, pruned(work.items, parts, polys), parts)
     except (Undefined, Unjustified, Rejected, AssertionError):
-        return False
-    parts = []
-    for equation in statement.equations:
-        part = prove_equation(oriented(equation, work.reading), work)
-        if part is None:
-            return False
-        parts.append(part)
-    items = pruned(work.items, parts, polys)
-    try:
-        replayed(statement, items, parts)
-    except Rejected:
         return False
     return satisfiable(statement, polys)
 

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 
 from derive.decide.completing import DEPTH, between_inverses, completed, dominated
-from derive.decide.squares import usual_squares
+from derive.decide.squares import gains, usual_squares
 from derive.decide.workspace import Workspace
 from derive.derivation import Proof
-from derive.kernel import Poly, Rejected
+from derive.kernel import Poly, Rejected, identity
 from derive.matrix.normal import reduced
-from derive.matrix.positivity import proposals, prove_comparison, rests
+from derive.matrix.positivity import proposals, prove_comparison, rests, schur_complement, schur_squares
 from derive.rules import Comparison, Grid, Positivity, Square, differentiate
 from derive.terms import grid_map
 
@@ -31,6 +32,10 @@ def prove_order(grid: Grid, strict: bool, work: Workspace, depth: int = 0) -> Pr
             proof = _by_squares(grid, squares, strict, work)
             if proof:
                 return Proof(positivity=proof)
+    for squares in block_squares(grid, work) if depth < DEPTH else ():
+        proof = _by_squares(grid, squares, strict, work)
+        if proof:
+            return Proof(positivity=proof)
     if len(grid) == len(grid[0]) == 1:
         for squares in usual_squares(grid[0][0], strict, work):
             proof = _by_squares(grid, squares, strict, work)
@@ -40,6 +45,41 @@ def prove_order(grid: Grid, strict: bool, work: Workspace, depth: int = 0) -> Pr
         return None
     found = _by_comparison(grid[0][0], work)
     return Proof(comparison=found) if found else None
+
+
+def block_squares(grid: Grid, work: Workspace) -> Iterator[tuple[Square, ...]]:
+    """Iterate over squares of block matrices: of a known one, and by the Schur complement of the last block."""
+    context = work.reading.context
+    for name, fact in list(context.facts.items()):
+        if fact.kind in ("psd", "pd") and len(fact.matrix) > 1:
+            for factor in _block_factors(grid, fact.matrix, work):
+                yield (Square(Fraction(1), (), factor, name),)
+    if len(grid) != 2:
+        return
+    corner = next((n for n, f in context.facts.items() if f.kind == "pd" and f.matrix == ((grid[1][1],),)), None)
+    inverse = work.inverse(grid[1][1])
+    if corner is None or inverse is None:
+        return
+    ((complement,),) = schur_complement(grid, inverse, context.alphabet)
+    name = _forcing(reduced(complement, work.relations_on([complement]), context.alphabet), work)
+    if name is not None:
+        yield schur_squares(grid, inverse, name, corner)
+
+
+def _block_factors(grid: Grid, core: Grid, work: Workspace) -> Iterator[Grid]:
+    """Iterate over factors F of F G F': the identity for a matrix like G, else [I, -X] for X = Y Z^-1 and gains."""
+    sizes = [row[i].rows for i, row in enumerate(core)]
+    if len(grid) == len(core):
+        yield tuple(
+            tuple(identity(m) if i == j else Poly({}, n, m) for j, m in enumerate(sizes)) for i, n in enumerate(sizes)
+        )
+        return
+    if len(grid) != 1 or len(core) != 2 or grid[0][0].rows != sizes[0]:
+        return
+    inverse = work.inverse(core[1][1])
+    sides = [core[0][1] * inverse] if inverse is not None else []
+    sides += [x for x in gains(work) if (x.rows, x.cols) == (sizes[0], sizes[1])]
+    yield from (((identity(sizes[0]), -x),) for x in [*sides, Poly({}, *sizes)])
 
 
 def _forms(grid: Grid, work: Workspace) -> Iterator[Grid]:

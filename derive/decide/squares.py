@@ -20,25 +20,21 @@ from derive.rules import Square
 if TYPE_CHECKING:
     from flint import fmpq
 
-__all__ = ["usual_squares"]
+__all__ = ["gains", "nonnegative_solution", "usual_squares"]
 
-MOST = 40  # squares that are tried at once
-ROUNDS = 4  # in which squares with negative coefficients are left out
+MOST = 60  # squares that are tried at once
 
 
 def usual_squares(claim: Poly, strict: bool, work: Workspace) -> Iterator[tuple[Square, ...]]:
-    """Iterate over sums of usual squares that are equal to the claim at random instances."""
+    """Iterate over sums of usual squares that are equal to the claim at random instances; there is one at most."""
     squares = list(islice(_usual(claim, strict, work), MOST))
     instances = _instances(claim, squares, work)
-    for _ in range(ROUNDS if instances and squares else 0):
-        solution = _solve(claim, squares, instances, work)
-        if solution is None:
-            return
-        if all(c >= 0 for c in solution):
-            found = zip(squares, solution, strict=True)
-            yield tuple(Square(fraction(c), (), s.factor, s.fact) for s, c in found if c)
-            return
-        squares = [s for s, c in zip(squares, solution, strict=True) if c >= 0]
+    if not instances or not squares:
+        return
+    solution = nonnegative_solution(_equations(claim, squares, instances, work))
+    if solution is not None:
+        found = zip(squares, solution, strict=True)
+        yield tuple(Square(c, (), s.factor, s.fact) for s, c in found if c)
 
 
 def _usual(claim: Poly, strict: bool, work: Workspace) -> Iterator[Square]:
@@ -52,7 +48,7 @@ def _usual(claim: Poly, strict: bool, work: Workspace) -> Iterator[Square]:
         core = fact.matrix[0][0]
         if fact.kind == "psd" and core in definite:
             continue
-        if set(core.terms) == {((), ())} or len(core.terms) > 1:
+        if set(core.terms) == {((), ())}:
             continue
         plain = core.rows == claim.rows and not (strict and core == claim)
         ours = [identity(core.rows)] if plain else []
@@ -61,19 +57,26 @@ def _usual(claim: Poly, strict: bool, work: Workspace) -> Iterator[Square]:
 
 
 def _factors(work: Workspace) -> Iterator[Poly]:
-    """Iterate over closed loops, gains and A."""
+    """Iterate over closed loops, gains and their differences, and A."""
     context = work.theory.reading.context
-    for fact in context.facts.values():
-        if fact.kind in ("schur", "hurwitz"):
-            yield fact.matrix[0][0]
-    for name in sorted(work.theory.optimal):
-        relation = context.relations.get(name)
-        if relation is not None:
-            gains = [w for m, w in relation.terms if not m and len(w) == 1]
-            yield from (Poly({((), w): 1}, relation.rows, relation.cols) for w in gains)
-    for letter in ("A", "A'"):
-        if letter[0] in context.alphabet.letters:
-            yield Poly({((), (letter,)): 1}, *context.alphabet.shape(letter))
+    yield from (f.matrix[0][0] for f in context.facts.values() if f.kind in ("schur", "hurwitz"))
+    known, found = context.alphabet, gains(work)
+    yield from found
+    yield from (x - y for x in found for y in found if x != y and (x.rows, x.cols) == (y.rows, y.cols))
+    if "A" in known.letters:
+        A = Poly({((), ("A",)): 1}, *known.shape("A"))
+        yield from (A, known.transpose(A))
+        if "C" in known.letters:
+            C = Poly({((), ("C",)): 1}, *known.shape("C"))
+            yield from (A - x * C for x in found if (x.rows, x.cols) == (A.rows, C.rows))
+
+
+def gains(work: Workspace) -> list[Poly]:
+    """Return the letters that the theory gives an optimum."""
+    context = work.theory.reading.context
+    relations = [context.relations[n] for n in sorted(work.theory.optimal) if n in context.relations]
+    words = [(w, r) for r in relations for m, w in r.terms if not m and len(w) == 1]
+    return [Poly({((), w): 1}, r.rows, r.cols) for w, r in words]
 
 
 def _instances(claim: Poly, squares: list[Square], work: Workspace) -> list[Instance]:
@@ -82,20 +85,46 @@ def _instances(claim: Poly, squares: list[Square], work: Workspace) -> list[Inst
     return sample(work.equations(False), polys, 2 + len(squares) // 3)
 
 
-def _solve(claim: Poly, squares: list[Square], instances: list[Instance], work: Workspace) -> list[fmpq] | None:
-    """Return coefficients with claim = sum c F H F' at every instance, zero where they are free; or None."""
+def _equations(claim: Poly, squares: list[Square], instances: list[Instance], work: Workspace) -> list[list[Fraction]]:
+    """Return the equations claim = sum c F H F' for the c, entry by entry: coefficients and right-hand side."""
     rows: list[list[fmpq]] = []
     for instance in instances:
         columns = [_value(s, instance, work).entries() for s in squares]
         rows += [list(row) for row in zip(*columns, instance.evaluate(claim).entries(), strict=True)]
     echelon, rank = stack(rows).rref()
-    found = [echelon[0, 0] * 0 for _ in squares]
-    for i in range(rank):
-        pivot = next(j for j in range(len(squares) + 1) if echelon[i, j] != 0)
-        if pivot == len(squares):
+    return [[fraction(echelon[i, j]) for j in range(len(squares) + 1)] for i in range(rank)]
+
+
+def nonnegative_solution(rows: list[list[Fraction]]) -> list[Fraction] | None:
+    """Return c >= 0 that solves equations, each given as its coefficients and right-hand side, or None.
+
+    The simplex method: an unknown is added to every equation, and their sum is made zero; by Bland's rule it ends.
+    """
+    count, size = len(rows), len(rows[0]) - 1 if rows else 0
+    table = [[-x for x in row] if row[-1] < 0 else list(row) for row in rows]
+    table = [[*row[:-1], *(Fraction(int(i == j)) for j in range(count)), row[-1]] for i, row in enumerate(table)]
+    cost = [-sum((row[j] for row in table), Fraction(0)) if not size <= j < size + count else Fraction(0)
+            for j in range(size + count + 1)]  # fmt: skip
+    basis = list(range(size, size + count))
+    while (entering := next((j for j in range(size) if cost[j] < 0), None)) is not None:
+        steps = [(row[-1] / row[entering], basis[i], i) for i, row in enumerate(table) if row[entering] > 0]
+        if not steps:
             return None
-        found[pivot] = echelon[i, len(squares)]
-    return found
+        _, _, at = min(steps)
+        pivot = table[at][entering]
+        table[at] = [x / pivot for x in table[at]]
+        for row in (*table[:at], *table[at + 1 :], cost):
+            factor = row[entering]
+            if factor:
+                row[:] = [x - factor * y for x, y in zip(row, table[at], strict=True)]
+        basis[at] = entering
+    if cost[-1] != 0:
+        return None
+    solution = [Fraction(0)] * size
+    for i, j in enumerate(basis):
+        if j < size:
+            solution[j] = table[i][-1]
+    return solution
 
 
 def _value(square: Square, instance: Instance, work: Workspace):

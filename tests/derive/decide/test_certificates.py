@@ -53,7 +53,7 @@ def test_a_file_is_verified(tmp_path):
 
 
 def changed(data: Any) -> Iterator[tuple[str, Any]]:
-    """Iterate over (place, copy of the data with one change): every leaf, every key and every entry of a list."""
+    """Iterate over (place, copy of the data with one change): every key, the ends of every list, and all below."""
     if isinstance(data, dict):
         for key, value in data.items():
             yield key, {k: v for k, v in data.items() if k != key}
@@ -61,7 +61,8 @@ def changed(data: Any) -> Iterator[tuple[str, Any]]:
             for place, other in changed(value):
                 yield f"{key}.{place}", {**data, key: other}
     elif isinstance(data, list):
-        for i, value in enumerate(data):
+        for i in sorted({0, len(data) - 1} & set(range(len(data)))):
+            value = data[i]
             yield str(i), data[:i] + data[i + 1 :]
             for place, other in changed(value):
                 yield f"{i}.{place}", [*data[:i], other, *data[i + 1 :]]
