@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from derive.latex.alphabet import ACCENTS, SIGNS
-from derive.latex.layout import (
+from derive.latex.boxes import (
     BESIDE,
     THIN,
     TOP,
@@ -20,9 +20,9 @@ from derive.latex.layout import (
     Row,
     Scripted,
     Table,
-    layout,
     tall,
 )
+from derive.latex.layout import layout
 from derive.terms import Equation, Term
 
 SPACE = '<mspace width=".17em"/>'

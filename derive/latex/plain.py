@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 
 from derive.latex.alphabet import ACCENTS, SIGNS
-from derive.latex.layout import (
+from derive.latex.boxes import (
     APPLY,
     BESIDE,
     THIN,
@@ -22,8 +22,8 @@ from derive.latex.layout import (
     Row,
     Scripted,
     Table,
-    layout,
 )
+from derive.latex.layout import layout
 from derive.terms import Equation, Term
 
 SPACES = {TIMES: " ", APPLY: "", THIN: " ", BESIDE: " "}

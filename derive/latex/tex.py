@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from derive.latex.alphabet import ACCENTS, GREEK, SIGNS
-from derive.latex.layout import (
+from derive.latex.boxes import (
     APPLY,
     BESIDE,
     SCRIPT,
@@ -22,9 +22,9 @@ from derive.latex.layout import (
     Row,
     Scripted,
     Table,
-    layout,
     tall,
 )
+from derive.latex.layout import layout
 from derive.terms import Equation, Term
 
 COMMANDS = {char: "\\" + name for name, char in GREEK.items()}

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from html import escape, unescape
 from importlib.resources import files
 
-from derive.latex.layout import Box, Op, layout, split, width
-from derive.latex.layout import row as beside
+from derive.latex.boxes import Box, Op, split, width
+from derive.latex.boxes import row as beside
+from derive.latex.layout import layout
 from derive.latex.mathml import math, mathml
 from derive.latex.plain import plain
 from derive.notes.font import embedded

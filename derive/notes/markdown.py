@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from derive.latex.layout import Op, layout
-from derive.latex.layout import row as beside
+from derive.latex.boxes import Op
+from derive.latex.boxes import row as beside
+from derive.latex.layout import layout
 from derive.latex.tex import latex, tex
 from derive.notes.html import SYMBOLS
 from derive.notes.model import SOURCES, Block, Display, Document, Figure, Inline, Link, Note, Para, Row, Section, Table

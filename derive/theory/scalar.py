@@ -26,7 +26,6 @@ from derive.theory import (
     scalar_transient,
 )
 from derive.theory.scalar_builder import ScalarBuilder
-from derive.theory.scalar_theory import ScalarTheory
 
 KEY, THEORY = "scalar", "scalar"
 PARTS = (
@@ -38,7 +37,7 @@ PARTS = (
 @cache
 def theory() -> Theory:
     """Return the theory ``scalar``: real parameters, W >= 0, V > 0, Q >= 0, R > 0."""
-    t = ScalarTheory(THEORY, "Scalar estimator")
+    t = Theory(THEORY, "Scalar estimator")
     for part in PARTS:
         part.declare(t)
     return t

@@ -23,7 +23,6 @@ from derive.theory import (
     spectrum_roots,
     spectrum_special,
 )
-from derive.theory.scalar_theory import ScalarTheory
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum", "spectrum"
@@ -44,7 +43,7 @@ PARTS = (
 @cache
 def theory() -> Theory:
     """Return the theory ``spectrum``: the steady filter, generic s, roots of real polynomials."""
-    t = ScalarTheory(THEORY, "Frequency domain of the filter")
+    t = Theory(THEORY, "Frequency domain of the filter")
     for part in PARTS:
         part.declare(t)
     return t

@@ -19,7 +19,6 @@ from derive.theory import (
     spectrum_poisson,
     spectrum_roots,
 )
-from derive.theory.scalar_theory import ScalarTheory
 from derive.theory.spectrum_builder import SpectrumBuilder
 
 KEY, THEORY = "spectrum-dt", "spectrum-dt"
@@ -29,7 +28,7 @@ PARTS = (spectrum_roots, spectrum_poisson, spectrum_circle, spectrum_discrete, s
 @cache
 def theory() -> Theory:
     """Return the theory ``spectrum-dt``: the steady predictor, generic s, eigenvalues and the unit circle."""
-    t = ScalarTheory(THEORY, "Frequency domain in discrete time")
+    t = Theory(THEORY, "Frequency domain in discrete time")
     for part in PARTS:
         part.declare(t)
     return t

@@ -10,7 +10,8 @@ import pytest
 
 from derive.functions import Quotient
 from derive.latex import latex, mathml, plain
-from derive.latex.layout import layout, split, width
+from derive.latex.boxes import split, width
+from derive.latex.layout import layout
 from derive.latex.mathml import math
 from derive.terms import (
     Delta,
