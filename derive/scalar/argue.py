@@ -52,6 +52,7 @@ TRIED = 24  # instances at which a sign is looked at before it is proved
 ENOUGH = 6  # of those of the theory that satisfy the case
 FEW = 60  # points at which instances of a case are looked for
 PRODUCTS = 700  # of facts, in one certificate of sign
+LARGE = 150  # addends of all facts, for a certificate of sign
 FALSE = {"≥": "positive", ">": "nonnegative", "≠": "="}  # of -p, where the claim on p fails
 
 
@@ -86,8 +87,12 @@ class Prover:
     without: frozenset[str] = frozenset()
     seeds: Sequence[Instance] = ()  # of the theory
     certificates: bool = True
-    budget: Budget = field(default_factory=Budget)
+    budget: Budget = field(init=False)
     systems: list[System] = field(default_factory=list[System])  # of the cases, as they end
+
+    def __post_init__(self) -> None:
+        """Bound what z3 may spend."""
+        self.budget = Budget(deadline=self.deadline)
 
     def prove(self, cases: Sequence[Case] = ()) -> Proof:
         """Return a proof.
@@ -303,8 +308,10 @@ class _Search:
         while len(ideal.rules) < 12 and ideal.grow():
             pass
         remainders = Remainders(ideal, facts)
+        if sum(len(p.terms) for p in _polys(facts, relations)) > LARGE:
+            return None
         for degree, used in _multipliers([(n, self.ring.poly(self.ring.letter(n))) for n in order]):
-            if comb(len(facts) + degree, degree) * (1 + len(used)) > PRODUCTS:
+            if comb(len(facts) + degree, degree) * (1 + len(used)) > PRODUCTS or monotonic() > self.prover.deadline:
                 continue
             found = contradiction(list(products(facts, used, degree)), remainders)
             if found:

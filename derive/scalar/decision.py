@@ -236,7 +236,7 @@ def _satisfiable(work: Work) -> None:
     """Make sure that some numbers satisfy all hypotheses."""
     if all(c.impossible for c in work.cases):
         raise InputError(f"assume: expected what the theory allows, got a contradiction with {work.known.impossible}")
-    if not work.instances.first(1, FEW) and _possible(work, Budget()) is False:
+    if not work.instances.first(1, FEW) and _possible(work, Budget(deadline=work.deadline)) is False:
         raise InputError("assume: expected what the theory allows, got a contradiction; leave one assumption out")
 
 

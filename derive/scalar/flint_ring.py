@@ -13,6 +13,9 @@ from derive.kernel import ANY, Poly
 __all__ = ["FlintRing", "fraction", "rational"]
 
 
+LARGE = 300  # addends of a polynomial that is factored
+
+
 def rational(value: Fraction | int) -> Any:
     """Return a rational number of FLINT."""
     return fmpq(value.numerator, value.denominator)
@@ -68,8 +71,17 @@ class FlintRing:
         """Return the letters that occur."""
         return {self.names[i] for i, d in enumerate(value.degrees()) if d > 0}
 
+    def divided(self, value: Any, factor: Any) -> Any:
+        """Return the quotient, None if there is a remainder."""
+        if not len(factor):
+            return None
+        quotient, rest = divmod(value, factor)
+        return quotient if not len(rest) else None
+
     def factors(self, value: Any) -> tuple[Fraction, list[tuple[Any, int]]]:
-        """Return number and irreducible factors with their powers."""
+        """Return number and irreducible factors with their powers; a large polynomial is left whole."""
+        if len(value) > LARGE:
+            return Fraction(1), [(value, 1)]
         content, found = value.factor()
         return fraction(content), [(f, int(e)) for f, e in found]
 

@@ -17,6 +17,7 @@ from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.instances import Instance
 from derive.scalar.ratio import Beyond
 from derive.terms import Equation, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero
+from derive.theory.claims.base import SCALAR
 
 __all__ = ["Edited", "edits", "nearest_scalar"]
 
@@ -102,7 +103,7 @@ def _widened(statement: Statement) -> Statement:
     """Return the statement in a theory that declares what bears on every letter that may be put in."""
     if statement.theory.conditions or statement.assumed:
         return statement
-    names = {s.name for s in (*_letters(statement), *statement.symbols)}
+    names = {SCALAR} | {s.name for s in (*_letters(statement), *statement.symbols)}
     return replace(statement, theory=statement.theory.about(names))
 
 

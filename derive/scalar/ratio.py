@@ -21,7 +21,7 @@ from derive.terms import Block, Dot, Identity, Inverse, Neg, Number, Product, Su
 
 __all__ = ["Answers", "Beyond", "KernelRing", "Numbers", "Ratio", "Ring", "name_of", "plain", "rate", "upright"]
 
-LARGEST = 3_000  # addends of a polynomial
+LARGEST = 1_000  # addends of a polynomial
 HIGHEST = 24  # exponent that is written out
 
 
@@ -52,6 +52,10 @@ class Ring(Protocol):
         """Return the number of addends."""
         ...
 
+    def divided(self, value: Any, factor: Any) -> Any:
+        """Return the quotient, None if there is a remainder."""
+        ...
+
 
 class KernelRing:
     """Polynomials of the kernel, for replay."""
@@ -75,6 +79,28 @@ class KernelRing:
     def size(self, value: Poly) -> int:
         """Return the number of addends."""
         return len(value.terms)
+
+    def divided(self, value: Poly, factor: Poly) -> Poly | None:
+        """Return the quotient, None if there is a remainder: the largest product of letters goes first."""
+        if not factor.terms:
+            return None
+        rest, found = value, Poly({}, ANY, ANY)
+        lead = max(factor.terms, key=_order)
+        while rest.terms:
+            top = max(rest.terms, key=_order)
+            names = list(top[0])
+            for name in lead[0]:
+                if name not in names:
+                    return None
+                names.remove(name)
+            addend = Poly({(tuple(names), ()): rest.terms[top] / factor.terms[lead]}, ANY, ANY)
+            rest, found = rest - addend * factor, found + addend
+        return found
+
+
+def _order(key: tuple[tuple[str, ...], tuple[str, ...]]) -> tuple[int, tuple[str, ...]]:
+    """Order products of letters by degree, then by name: an order that multiplication keeps."""
+    return len(key[0]), key[0]
 
 
 @dataclass(frozen=True)
@@ -154,7 +180,7 @@ class Numbers:
 
     def multiply(self, a: Ratio, b: Ratio) -> Ratio:
         """Multiply two fractions."""
-        if self.ring.size(a.top) * self.ring.size(b.top) > 100 * LARGEST:
+        if self.ring.size(a.top) * self.ring.size(b.top) > 200 * LARGEST:
             raise Beyond("a product that is too large to be written out")
         return self._bounded(Ratio(a.top * b.top, _together(a.bottom, b.bottom)))
 
@@ -174,9 +200,16 @@ class Numbers:
         return number, tuple((self.ring.letter(x), names.count(x)) for x in dict.fromkeys(names))
 
     def _bounded(self, a: Ratio) -> Ratio:
-        if self.ring.size(a.top) > LARGEST:
+        """Cancel the factors of the denominator that divide the numerator, and bound what is left."""
+        top, bottom = a.top, list[tuple[Any, int]]()
+        for factor, exponent in a.bottom:
+            left = exponent
+            while left and (quotient := self.ring.divided(top, factor)) is not None and self.ring.size(top):
+                top, left = quotient, left - 1
+            bottom += [(factor, left)] if left else []
+        if self.ring.size(top) > LARGEST:
             raise Beyond("a polynomial that is too large")
-        return a
+        return Ratio(top, tuple(bottom))
 
     def same_sign(self, a: Ratio) -> Any:
         """Return a polynomial with the sign of a fraction."""

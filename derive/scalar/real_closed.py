@@ -10,24 +10,31 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
+from math import inf
+from time import monotonic
 from typing import Any
 
 from derive.kernel import Poly
 
 __all__ = ["Answered", "Budget", "Fact", "ask"]
 
-LIMIT = 3_000_000  # z3's count of resources for one question
-TOTAL = 20_000_000  # and for all that one claim asks
+LIMIT = 400_000  # z3's count of resources for one question
+TOTAL = 1_500_000  # and for all that one claim asks
 Fact = tuple[str, Poly]  # a kind of fact, or "=" for a polynomial that is zero
 SIGN = {"nonnegative": "(>= {} 0)", "positive": "(> {} 0)", "nonzero": "(distinct {} 0)", "=": "(= {} 0)"}
 
 
 @dataclass
 class Budget:
-    """What one claim may still ask of z3."""
+    """What one claim may still ask of z3; ``deadline`` is the last resort, by the clock."""
 
     left: int = TOTAL
     asked: int = 0
+    deadline: float = inf
+
+    def milliseconds(self) -> int:
+        """Return the time that is left."""
+        return int(max(1, min(600_000, 1000 * (self.deadline - monotonic()))))
 
 
 @dataclass(frozen=True)
@@ -62,7 +69,7 @@ def ask(facts: Mapping[str, Fact], choices: Mapping[str, Sequence[Fact]], budget
     names = [*facts, *choices]
     context = z3.Context()
     solver = z3.SolverFor("QF_NRA", ctx=context)
-    solver.set("rlimit", min(LIMIT, budget.left))
+    solver.set("rlimit", min(LIMIT, budget.left), "timeout", budget.milliseconds())
     solver.from_string("".join(_script(letters, claims)))
     answer = solver.check(*(z3.Bool(f"p{i}", context) for i in range(len(claims))))
     budget.asked += 1

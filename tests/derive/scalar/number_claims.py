@@ -284,7 +284,40 @@ NUMBERS = [
     T(KB, "a letter that is defined", "g = 1", "g = A / A", r"A \neq 0"),
 ]  # fmt: skip
 
-ROWS = [*ROOTS, *LOOPS, *BOUNDS, *DISCRETE, *REGULATOR, *NUMBERS]
+STEPS = [
+    T(DT, "two steps", r"P_{k+2} = Q + \frac{A^2 R P_{k+1}}{C^2 P_{k+1} + R}"),
+    T(DT, "the step is monotone", r"P_{k+1} \le P_k", r"P_k \le P_{k-1}"),
+    F(DT, "C = 0, A = 2", r"P_{k+1} \le P_k"),
+    T(DT, "a fixed point of a monotone step", r"P_k \ge P", r"P_{k-1} \ge P"),
+    F(DT, "C = 0, A = 1, Q = 0", r"P_k < P_{k-1} + Q"),
+    T(DT, "product of both loops", r"P_k - P = (A - L C) (A - L_k C) (P_{k-1} - P)"),
+    F(DT, "one loop twice", r"P_k - P = (A - L C)^2 (P_{k-1} - P)"),
+    T(DT, "both loops at most |A|", r"|P_k - P| \le A^2 |P_{k-1} - P|"),
+    F(DT, "at the fixed point", r"|P_k - P| < |P_{k-1} - P|"),
+    T(DT, "both loops at most 1", r"|P_k - P| \le |P_{k-1} - P|", r"A^2 \le 1"),
+]  # fmt: skip
+
+SOLUTIONS = [
+    T(KB, "P' = -P^2", r"P(t) = \frac{P(0)}{1 + P(0) t}", "A = 0", "C = 1", "V = 1", "W = 0"),
+    F(KB, "the rate is twice that", r"P(t) = \frac{P(0)}{1 + 2 P(0) t}", "A = 0", "C = 1", "V = 1", "W = 0"),
+    T(KB, "P' = -C^2 P^2/V", r"P(t) = \frac{P(0)}{1 + P(0) C^2 t / V}", "A = 0", "W = 0"),
+    F(KB, "the start is 1 more", r"P(t) = 1 + P(0)"),
+    T(KB, "P' = 2 A P", r"P(t) = P(0) e^{2 A t}", "W = 0", "C = 0"),
+    F(KB, "P' = 2 A P", r"P(t) = P(0) e^{A t}", "W = 0", "C = 0"),
+    T(KB, "variation of constants", r"P(t) = e^{2 A t} P(0) + \frac{W}{2 A} (e^{2 A t} - 1)", r"A \ne 0", "C = 0"),
+    F(KB, "sign", r"P(t) = e^{2 A t} P(0) - \frac{W}{2 A} (e^{2 A t} - 1)", r"A \ne 0", "C = 0"),
+    T(
+        KB, "1/P is linear",
+        r"P(t) = \frac{P(0) e^{2 A t}}{1 + \frac{P(0) C^2}{2 A V} (e^{2 A t} - 1)}", r"A \ne 0", "W = 0",
+    ),
+    T(KB, "", r"e^{-A t} > 0"),
+    T(KB, "the tangent", r"e^{A} \ge 1 + A"),
+    F(KB, "A = 1", r"e^{A} = 1 + A"),
+    T(KB, "", r"e^{2 A} = (e^{A})^2"),
+    T(KB, "", r"e^{A} e^{-A} = 1"),
+]  # fmt: skip
+
+ROWS = [*STEPS, *SOLUTIONS, *ROOTS, *LOOPS, *BOUNDS, *DISCRETE, *REGULATOR, *NUMBERS]
 
 CONTRADICTIONS = [
     (KB, ("V = 0",)), (KB, ("V = 1", "V = 2")), (KB, ("A > 1", "A < 0")), (KB, ("A > 0", "C = 0")), (KB, ("W = -1",)),
