@@ -54,7 +54,7 @@ class Theory:
     families: dict[str, Family] = field(default_factory=dict[str, Family])
     sequences: dict[str, tuple[Term, Symbol]] = field(default_factory=dict)  # x_0, x_{k+1}
     maps: dict[str, dict[str, Term]] = field(default_factory=dict)
-    waits: dict[str, Wait] = field(default_factory=dict[str, Wait])
+    waits: tuple[dict[str, Item], dict[str, Wait]] = ({}, {})  # what is declared, and what each waits for
 
     def matrix(
         self,
@@ -321,14 +321,14 @@ class Theory:
 
         An equation that was ``learnt`` is a reason for nothing but an inverse that waits for two identities.
         """
-        if self.waits.keys() != self.declared.keys():
-            self.waits = waits_of(self.declared)
+        if self.waits[0] != self.declared:
+            self.waits = dict(self.declared), waits_of(self.declared)
         if learnt is not None and learnt.relation == "=" and not self._wait_for_identities(reading):
             return reading
         before: frozenset[str] | None = None
         while before != reading.adopted:
             before = reading.adopted
-            for name, wait in self.waits.items():
+            for name, wait in self.waits[1].items():
                 if name not in reading.adopted and wait.over(reading):
                     try:
                         reading = declare(reading, self.declared[name])
