@@ -14,7 +14,7 @@ from flint import ctx
 from derive.claim import Answer, Counterexample, Entries, Nearest, Verdict
 from derive.decide.spectra.evaluate import Place, value
 from derive.decide.spectra.numbers import NoValue
-from derive.decide.spectra.places import decided, places
+from derive.decide.spectra.places import decided, places, speaks_of_known_functions
 from derive.decide.spectra.ratio import Fractional, Undefined
 from derive.decide.spectra.theorems import STEPS, prove_by_theorems
 from derive.functions import Definite
@@ -33,6 +33,10 @@ MOST, ENOUGH = 80, 5  # plants that are tried; plants at which all is enclosed b
 DIGITS = 12
 SHOWN = ("A", "C", "W", "V", "B", "P")
 FACTORS = (Fraction(2), Fraction(1, 2), Fraction(-1))
+UNKNOWN_FUNCTION = (
+    r"what f is, whose zeros and poles it speaks of, is not given: assume f(s) = \det[\Phi_y(s) V^{-1}], for example, "
+    r"or f(s) = \frac{p(s)}{q(s)} for any"
+)
 EDITS = {Fraction(2): "a factor 2", Fraction(1, 2): "a factor 1/2", Fraction(-1): "the sign"}
 ONE_SIDED = (
     "The spectrum is two-sided: the integral runs over all frequencies, with the factor 1/(2π); over positive "
@@ -64,6 +68,8 @@ def decide_spectra(statement: Statement, seconds: float = 10.0) -> Answer:
 
 
 def _decide(statement: Statement, deadline: float) -> Answer:
+    if not speaks_of_known_functions(statement):
+        return _undecided(statement, UNKNOWN_FUNCTION)
     trial = tried(statement, deadline)
     if trial.failure is not None:
         return _refuted(statement, trial.failure, deadline)

@@ -24,9 +24,10 @@ from derive.matrix.exact import PROPERTIES, hurwitz, positive_semidefinite
 from derive.matrix.instance import one
 from derive.terms import Equation, Symbol, Term, Zero, walk
 
-__all__ = ["admissible", "decided", "difference", "places"]
+__all__ = ["admissible", "decided", "difference", "places", "speaks_of_known_functions"]
 
 SEED, DRAWS, WANTED = 7, 4000, 14
+FUNCTIONS = frozenset("fpqφηζ")  # letters of a function of s, its zeros and poles
 FACTS = {"⪰": "psd", "≻": "pd"}
 
 
@@ -115,7 +116,7 @@ def _completed(place: Place, statement: Statement) -> Iterator[Place]:
         scale = 2 if place.letters["V"][0, 0] == 4 else 1  # V is I or 4 I
         place = replace(place, letters={**place.letters, "V^1/2": one(place.sizes["l"]) * scale})
     place = replace(place, numbers={**place.numbers, **_extremes(theory, place)})
-    if "f" in names or names & {"φ", "η", "ζ"}:
+    if names & FUNCTIONS:
         yield from _with_function(place, statement, names)
     else:
         yield place
@@ -206,6 +207,12 @@ def _with_function(place: Place, statement: Statement, names: set[str]) -> Itera
         chosen = _having(place, p, q)
         numbers = {**chosen.numbers, "σ0": Fractional.of(generator.choice((1, 2))), "ω0": Fractional.of(1)}
         yield replace(chosen, numbers=numbers)
+
+
+def speaks_of_known_functions(statement: Statement) -> bool:
+    """Tell whether f is given where a statement is about it, its zeros or its poles."""
+    names = {n.name for e in statement.equations for t in (e.lhs, e.rhs) for n in walk(t) if isinstance(n, Symbol)}
+    return not names & FUNCTIONS or _definition_of_f(statement) is not None
 
 
 def _definition_of_f(statement: Statement) -> Term | None:

@@ -127,6 +127,15 @@ def test_what_only_balls_show_is_supported() -> None:
     assert "at 80 plants" in found.notes[0]
 
 
+def test_a_function_that_is_not_given_is_asked_for() -> None:
+    """Zeros and poles of what? The sources say so in words."""
+    claim = r"\sum_{i=1}^{m} \max\{0, \Re[\varphi_i]\} = 0"
+    found = answer(claim)
+    assert found.verdict is Verdict.undecided
+    assert "f(s)" in found.notes[0]
+    assert answer(claim, (r"f(s) = \det[\Phi_y(s) V^{-1}]",)).verdict is Verdict.refuted
+
+
 def test_assumptions_that_no_plant_satisfies_prove_nothing() -> None:
     found = answer(f"{COST} = {MEAN} + 2 {SUM}", (r"\Re[\lambda_i(A)] < 0", r"\Re[\lambda_i(A)] > 0"))
     assert found.verdict is Verdict.undecided
