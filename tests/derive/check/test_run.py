@@ -14,6 +14,7 @@ from derive.check.pool import Worker, judge_side_by_side
 from derive.check.text import complaints
 from derive.claim import Answer, Claim, Counterexample, Nearest, Verdict
 from derive.errors import InputError
+from derive.replay import verify_file
 
 ONE = ((Fraction(1),),)
 EXAMPLE = Counterexample({}, {"A": ((Fraction(2),),)}, ONE, ((Fraction(3),),))
@@ -264,8 +265,6 @@ def test_errors_are_one_line_each():
 
 # ------------------------------------------------------------------------------------------------ certificates
 def test_certificates_are_files_that_verify_replays(tmp_path):
-    from derive.replay import verify_file
-
     claims = ["L = A P C^T (C P C^T + R)^{-1}", "P = Q", "P = P^T"]
     report = check(claims, theory="luenberger-dt")
     assert [r.verdict for r in report.results] == ["proved", "refuted", "proved"]
@@ -276,8 +275,6 @@ def test_certificates_are_files_that_verify_replays(tmp_path):
 
 
 def test_a_certificate_of_a_claim_with_macros_is_replayed_without_them(tmp_path):
-    from derive.replay import verify_file
-
     path = tmp_path / "n.md"
     path.write_text("\\newcommand{\\T}{^{\\top}}\n$$F = A S C\\T (C S C\\T + R)^{-1}$$", encoding="utf-8")
     head = "---\nderive:\n  theory: luenberger-dt\n  notation:\n    F: L\n    S: P\n---\n"
@@ -286,6 +283,17 @@ def test_a_certificate_of_a_claim_with_macros_is_replayed_without_them(tmp_path)
     assert report.exit_code == 0, str(report)
     (certificate,) = write_certificates(report, tmp_path / "certificates")
     assert "\\T" not in certificate.read_text(encoding="utf-8").replace("\\Top", "")
+    assert all(found.accepted for found in verify_file(certificate))
+
+
+def test_a_certificate_says_what_the_letters_mean_in_the_theory(tmp_path):
+    path = tmp_path / "n.md"
+    head = "---\nderive:\n  theory: luenberger-dt\n  notation:\n    P: Q\n    Q: P\n---\n"
+    path.write_text(f"{head}$$Q = P + A Q A^T - A Q C^T (C Q C^T + R)^{{-1}} C Q A^T$$", encoding="utf-8")
+    report = check(path)
+    assert report.exit_code == 0, str(report)
+    (certificate,) = write_certificates(report, tmp_path / "certificates")
+    assert "P = Q + A P" in certificate.read_text(encoding="utf-8")
     assert all(found.accepted for found in verify_file(certificate))
 
 
