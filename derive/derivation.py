@@ -7,13 +7,14 @@ installed theory, checks the steps in order and lets a proved step serve as a le
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from typing import Literal
 
 from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt, names_of, owner
 from derive.display import Displayed
-from derive.functions import Definite, Limit, Rate, Start, single_of
+from derive.functions import Definite, Limit, Rate, Start, single_of, value
 from derive.induction import Induction, atoms_in, check_induction, starts_in
 from derive.kernel import Certificate, Poly, Rejected, replay
 from derive.kernel import Term as Addend
@@ -183,7 +184,7 @@ def order_claim(statement: Equation, reading: Reading) -> Grid:
 
 def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     """Replay one step, or raise Rejected."""
-    reading = _in_force(step, reading, earlier)
+    reading = in_force(step, reading, earlier)
     context, proof = reading.context, step.proof
     _check_variables(step, reading, earlier)
     parts = PARTS.get(step.rule, ("identities",))
@@ -238,6 +239,9 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
     moving |= {TIME} if step.rule == "same rate" else set()
     moving |= {COMPLEX} if step.rule in FUNCTIONS or any(isinstance(n, At) for n in nodes) else set()
     names = {*step.uses, *step.proof.relations()}
+    if moving:
+        links = [earlier[name].statement for name in step.proof.links if name in earlier]
+        names |= {name for statement in (step.statement, *links) for name in _made_of(statement, reading)}
     if step.rule == "induction":
         moving, names = {STEPS}, names | atoms_in(step.statement, reading)
         if unnamed := starts_in(step.statement, reading) - {*step.uses}:
@@ -245,6 +249,15 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
     for name in _behind(names, reading, earlier) if moving else ():
         if moving & reading.real.fixed.get(name, frozenset()):
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
+
+
+def _made_of(statement: Equation, reading: Reading) -> set[str]:
+    """Return the functions that occur in a statement, as far as they can be read, each of which exists for a reason."""
+    found = set[str]()
+    for node in (n for side in (statement.lhs, statement.rhs) for n in walk(side)):
+        with suppress(Rejected):
+            found |= scalars_of(value(node, reading))
+    return reading.real.reached(found) & reading.real.atoms.keys()
 
 
 def _below(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
@@ -270,11 +283,23 @@ def _behind(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> s
     return seen
 
 
-def _in_force(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> Reading:
-    """Return the reading without the facts of cases that the step does not name; some rules look for facts."""
-    unnamed = reading.real.cases - _below({*step.uses, *step.proof.relations()}, reading, earlier)
-    facts = {name: fact for name, fact in reading.context.facts.items() if name not in unnamed}
-    return replace(reading, context=replace(reading.context, facts=facts))
+def hidden_from(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
+    """Return the cases that a step does not name, nor what it names rests on, and what is proved in such cases."""
+    cases = reading.real.cases
+    hidden = set(cases - _below({*step.uses, *step.proof.relations()}, reading, earlier)) if cases else set[str]()
+    for name, other in earlier.items() if hidden else ():
+        if hidden.intersection(map(owner, (*other.uses, *other.proof.relations()))):
+            hidden.add(name)
+    return hidden
+
+
+def in_force(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> Reading:
+    """Return the reading without the facts and limits that are hidden from a step; some rules look for them."""
+    real, context, hidden = reading.real, reading.context, hidden_from(step, reading, earlier)
+    facts = {name: fact for name, fact in context.facts.items() if name not in hidden}
+    limits = {key: limit for name, key, limit in reversed(real.named) if name not in hidden}
+    sums = tuple(known for known in real.sums if known[4] not in hidden)
+    return replace(reading, context=replace(context, facts=facts), real=replace(real, limits=limits, sums=sums))
 
 
 def _check_chain(step: Step, earlier: dict[str, Step]) -> None:

@@ -81,7 +81,8 @@ class Real:
 
     atoms: Mapping[str, Atom] = field(default_factory=dict[str, Atom])
     limits: Mapping[tuple[str, str, Scalars], Poly] = field(default_factory=dict[tuple[str, str, Scalars], Poly])
-    sums: tuple[tuple[str, str, Poly, Poly], ...] = ()  # proved limits of sums: variable, point, sum, limit
+    sums: tuple[tuple[str, str, Poly, Poly, str], ...] = ()  # limits of sums: variable, point, sum, limit, its name
+    named: tuple[tuple[str, tuple[str, str, Scalars], Poly], ...] = ()  # the names of limits; the first one counts
     families: Mapping[str, Family] = field(default_factory=dict[str, Family])
     sequences: Mapping[str, Progression] = field(default_factory=dict[str, Progression])
     arbitrary: frozenset[str] = frozenset()  # parameters of which no hypothesis is made

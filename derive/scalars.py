@@ -60,11 +60,10 @@ def adopt_scalar(reading: Reading, name: str, statement: Equation) -> Reading:
             limited = value(body, reading)
             if len(limited.terms) == 1:
                 (((m, _), c),) = limited.terms.items()
-                key = (symbol.name, point_of(point), m)
-                if key not in real.limits:
-                    real = replace(real, limits={**real.limits, key: value(rhs, reading).scale(1 / c)})
+                known = name, (symbol.name, point_of(point), m), value(rhs, reading).scale(1 / c)
+                real = replace(real, named=(*real.named, known), limits={known[1]: known[2], **real.limits})
             elif limited.terms:
-                known = symbol.name, point_of(point), limited, value(rhs, reading)
+                known = symbol.name, point_of(point), limited, value(rhs, reading), name
                 real = replace(real, sums=(*real.sums, known))
             return replace(reading, real=real)
         case Symbol() if statement.relation == ":=":

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from derive.context import Declared, DeclaredAtom, names_of
-from derive.derivation import Derived, Proof, Rule, Step, Text
+from derive.derivation import Derived, Proof, Rule, Step, Text, hidden_from, in_force
 from derive.functions import Definite, Limit, Rate, Start, value
 from derive.induction import Claim, Induction, claim_of, starts_in
 from derive.kernel import Certificate, Poly, Rejected
@@ -185,12 +185,27 @@ class ScalarBuilder(Builder):
 
     def record(self, step: Step) -> Step:
         """Replay a step and keep it; it also names the cases in which its quotients and roots are defined."""
-        return super().record(
-            replace(
-                step,
-                uses=tuple(dict.fromkeys((*step.uses, *self._consulted(step.statement), *self._cases(step.statement)))),
-            )
-        )
+        uses = dict.fromkeys((*step.uses, *self._consulted(step.statement), *self._cases(step.statement)))
+        return super().record(self._complete(replace(step, uses=tuple(uses))))
+
+    def _complete(self, step: Step) -> Step:
+        """Name what is proved in a case as well, if the limits in a statement are not known without it."""
+        limited = any(isinstance(side, Limit) for side in (step.statement.lhs, step.statement.rhs))
+        if not limited or not _reads(step.statement, self.reading):
+            return step
+        hidden = hidden_from(step, self.reading, self.steps)
+        more = [name for name in self.steps if name in hidden]
+
+        def reads(names: Sequence[str]) -> bool:
+            named = replace(step, uses=(*step.uses, *names))
+            return _reads(step.statement, in_force(named, self.reading, self.steps))
+
+        if reads(()):
+            return step
+        for name in tuple(more):
+            if reads([other for other in more if other != name]):
+                more.remove(name)
+        return replace(step, uses=(*step.uses, *more))
 
     def _consulted(self, statement: Equation) -> list[str]:
         """Return the cases and proved limits without which the limits in a statement are not known."""

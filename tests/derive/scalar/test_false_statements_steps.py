@@ -6,20 +6,21 @@ Each is the smallest that one gap would let through. The theories are satisfiabl
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 from derive.context import Theory
 from derive.derivation import Proof, Step, verify
-from derive.functions import ON_CIRCLE, Definite, Infinity, Limit, Log, Rate
+from derive.functions import ON_CIRCLE, Definite, Exp, Infinity, Limit, Log, Power, Quotient, Rate
 from derive.induction import Induction, claim_of
 from derive.kernel import Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import HYPOTHESIS, NEGATION, Sign, SignProduct, constant, scalar
 from derive.rules import Positivity, Square
 from derive.spectral import At, Det, Modulus, Roots
-from derive.terms import Equation, Identity, Number, Product, Symbol, Term, Trace, Zero
+from derive.terms import Equation, Identity, Neg, Number, Product, Symbol, Term, Trace, Zero
 from tests.derive.scalar.test_false_statements import linked, same, sign
 from tests.derive.scalar.test_induction import counting, free, sequence
 
@@ -220,3 +221,67 @@ def test_a_recursion_in_which_the_next_member_drops_out():
     free(t)
     t.recur("goes on", c + NONE * t.symbols["x'"], k)
     refused(t, same(k, k), match="drops out")
+
+
+# ------------------------------------------------------------------------------------------------ functions and limits
+def test_an_integral_across_a_pole_that_a_hypothesis_excludes():
+    """∫ -1/(ω - 3)^2 dω over (0, ∞) is not 1/3, though ω ≠ 3 for the ω of a hypothesis."""
+    t, (w,) = theory("ω")
+    t.assume("ω ≠ 3", w - number(3), "≠")
+    t.atom("reciprocal", w - number(3), "ω ≠ 3", "1/(ω-3)")
+    over = Quotient(ONE, w - number(3))
+    body = Neg(Power(over, 2))
+    t.atom("improper", body, name="∫")
+    ends = [
+        same(Limit(over, w, Infinity()), ZERO, "high"),
+        same(Limit(over, w, ZERO), Neg(Quotient(ONE, number(3))), "low"),
+    ]
+    whole = linked(Equation(Definite(body, w, ZERO, Infinity()), "=", Quotient(ONE, number(3))), "integral",
+                   "rate", "high", "low", name="whole")  # fmt: skip
+    accepted(t, same(over, over))
+    refused(t, same(Rate(over, w), body, "rate"), *ends, whole, match="ω ≠ 3, which holds ω")
+
+
+def decaying() -> tuple[Theory, Term, Symbol]:
+    """e^{-(c - 3) z}, with c > 3 as a case, and as a lemma that rests on it."""
+    t, (c, z) = theory("c", "z")
+    t.assume("case", c - number(3), ">", ZERO, case=True)
+    body = Neg(Product((c - number(3), z)))
+    t.atom("exp", body, name="e")
+    return t, Exp(body), z
+
+
+def test_a_limit_that_needs_a_case():
+    t, e, z = decaying()
+    c = t.symbols["c"]
+    products = [SignProduct(UNIT, ("case",)), SignProduct(UNIT, (NEGATION,))]
+    lemma = sign(Equation(c - number(3), ">", ZERO), scalar("c") - constant(3), products, [], "lemma")
+    limit = same(Limit(e, z, Infinity()), ZERO, "limit")
+    for names in (("case",), ("lemma",)):
+        accepted(t, lemma, replace(limit, uses=names))
+    refused(t, lemma, limit, match="the limit of e is not known")
+    again = replace(limit, name="again")
+    accepted(t, lemma, replace(limit, uses=("lemma",)), replace(again, uses=("limit",)))
+    refused(t, lemma, replace(limit, uses=("lemma",)), again, match="the limit of e is not known")
+
+
+def test_two_limits_in_two_cases():
+    """e^{cz} tends to 0 or is 1, as c < 0 or c = 0; that in the case which a step names counts."""
+    t, (c, z) = theory("c", "z")
+    t.atom("exp", c * z, name="e")
+    limit = Limit(Exp(c * z), z, Infinity())
+    for name, x in (("to 0", ZERO), ("to 1", ONE)):
+        t.assume(name, limit, "=", x, case=True)
+    for case, x, y in (("to 0", ZERO, ONE), ("to 1", ONE, ZERO)):
+        accepted(t, replace(same(limit, x), uses=(case,)))
+        refused(t, replace(same(limit, y), uses=(case,)), match="another claim")
+        refused(t, same(limit, x), match="not known")
+
+
+def test_the_limit_of_a_sum_in_a_case():
+    t, (c, z) = theory("c", "z")
+    t.atom("exp", c * z, name="e")
+    limit = Limit(z * Exp(c * z) + Exp(c * z), z, Infinity())
+    t.assume("to 0", limit, "=", ZERO, case=True)
+    accepted(t, replace(same(limit, ZERO), uses=("to 0",)))
+    refused(t, same(limit, ZERO), match="not known")
