@@ -21,6 +21,7 @@ from derive.kernel import Poly
 from derive.real import NEGATION, Sign, SignProduct, constant, contrary, sign_product
 from derive.rules import Fact
 from derive.scalar.flint_ring import FlintRing
+from derive.scalar.hypotheses import system
 from derive.scalar.ideal import Ideal
 from derive.scalar.instances import Instance, Instances
 from derive.scalar.proof import (
@@ -43,7 +44,7 @@ from derive.scalar.ratio import Numbers, Ratio
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.real_closed import Fact as Claim
 from derive.scalar.search import Remainders, contradiction, products
-from derive.scalar.system import Case, Split, System, proportional, sign_of, system
+from derive.scalar.system import Case, Split, System, proportional, sign_of
 
 __all__ = ["Failed", "Prover", "Unknown"]
 

@@ -7,123 +7,35 @@ at which the claim was evaluated, or undecided.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import islice
 from time import monotonic
-from typing import Any
-
-from flint import fmpq
 
 from derive.claim import Answer, Counterexample, Verdict
-from derive.context import Declared, DeclaredFact, DeclaredInverse
+from derive.context import DeclaredFact
 from derive.errors import InputError
 from derive.interpret.statement import Statement
 from derive.latex import plain
 from derive.scalar.argue import Failed, Prover, Unknown, choices_of, facts_of
 from derive.scalar.evaluate import Undefined, Unsure, holds
 from derive.scalar.evolution import evolution
-from derive.scalar.example import NumberExample
-from derive.scalar.flint_ring import FlintRing, fraction, rational
-from derive.scalar.instances import Instance, Instances, Several
+from derive.scalar.example import example
+from derive.scalar.flint_ring import rational
 from derive.scalar.proof import Proof, accept, leaves
 from derive.scalar.proof_file import certificate
-from derive.scalar.ratio import Beyond, name_of
+from derive.scalar.ratio import Beyond
 from derive.scalar.real_closed import Budget, ask
 from derive.scalar.reasons import bearing_names, letters_of, used_names
-from derive.scalar.system import POWERS, ROOTS, Case, Split, System, names_in, system
-from derive.terms import Equation, Symbol, Zero, walk
-from derive.theory.claims.base import split_index
+from derive.scalar.work import Failure, Work
+from derive.terms import Equation, Symbol, Zero
 
 __all__ = ["decide_scalar"]
 
-TIMES = ("t", "τ", "t0")
-MOST = 4  # signs that split the hypotheses
 FIRST, MORE = 60, 600  # instances at which a claim is evaluated before and after a proof is tried
 POINTS = 1_000  # points at which the first instances are looked for
 FEW = 200  # points at which instances are looked for before z3 is asked whether there are any
-
-
-@dataclass(frozen=True)
-class Failure:
-    """An instance at which a claim is false, or undefined for a reason."""
-
-    instance: Instance
-    number: int  # of the equation
-    left: Any = None
-    right: Any = None
-    undefined: str = ""
-
-    @property
-    def exact(self) -> bool:
-        """Whether all that is shown is rational."""
-        return not self.instance.roots and not self.undefined and None not in (_plain(self.left), _plain(self.right))
-
-
-@dataclass
-class Work:
-    """A statement with the instances of its theory."""
-
-    statement: Statement
-    ring: FlintRing
-    names: Sequence[str]
-    known: System
-    cases: tuple[System, ...]
-    instances: Several
-    deadline: float
-    shown: list[str] = field(default_factory=list[str])
-    moving: str = ""  # why values at one instant refute nothing
-    varying: list[str] = field(default_factory=list[str])  # letters that vary with time
-
-    @classmethod
-    def of(cls, statement: Statement, deadline: float, without: frozenset[str] = frozenset()) -> Work:
-        """Read the hypotheses, in two cases where a sign decides what they say."""
-        names = names_in(statement)
-        ring = FlintRing([*names, *ROOTS, *POWERS])
-        cases = tuple(_systems(statement, ring, without))
-        known = next((c for c in cases if not c.impossible), cases[0])
-        instances = Several([Instances(c, ring, names) for c in cases])
-        shown = _shown(statement, known)
-        symbols = statement.theory.theory.symbols
-        stems = {n: symbols.get(n.partition("@")[0]) for n in letters_of(statement)}
-        varying = [n for n, symbol in stems.items() if symbol is not None and symbol.args]
-        return cls(statement, ring, names, known, cases, instances, deadline, shown, moving(statement), varying)
-
-    def failures(self, instances: Iterable[Instance]) -> Iterator[Failure]:
-        """Iterate over the instances that contradict the statement."""
-        for instance in instances:
-            if monotonic() > self.deadline:
-                return
-            found = self.failure(instance)
-            if found is not None:
-                yield found
-
-    def failure(self, instance: Instance) -> Failure | None:
-        """Return how an instance contradicts the statement, if it does.
-
-        A covariance that varies is taken positive: it starts so, and stays so.
-        """
-        if self.moving or any(instance.values.get(n, 1) == 0 for n in self.varying):
-            return None
-        for i, equation in enumerate(self.statement.equations):
-            try:
-                answer, left, right = holds(equation, instance.values)
-            except Undefined as error:
-                return Failure(instance, i, undefined=str(error))
-            except Unsure:
-                continue
-            if answer is False:
-                return Failure(instance, i, left, right)
-        return None
-
-    def simplest(self, failures: Iterable[Failure]) -> Failure | None:
-        """Return the failure that is easiest to follow: both sides exact, small numbers."""
-        return min(failures, default=None, key=self.rank)
-
-    def rank(self, failure: Failure) -> tuple[Any, ...]:
-        """Order failures: a false value before an undefined one, rational before not, small before large."""
-        return bool(failure.undefined), not failure.exact, failure.instance.size(self.shown)
 
 
 def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool = False, near: bool = True) -> Answer:
@@ -207,29 +119,6 @@ def _where(work: Work, example: Counterexample | None) -> str:
         except InputError:
             continue
     return ""
-
-
-def moving(statement: Statement) -> str:
-    """Return why free values of letters may not be those of one solution: several times, or unlike indices."""
-    symbols = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol)]
-    if any(n.args not in ((), ("t",)) or n.name in TIMES for n in symbols):
-        return "a function of time is not refuted by values at one instant"
-    known = statement.theory.theory.symbols
-    indices = {split_index(n.name)[1] for n in symbols if n.name in known and split_index(n.name)[0] != n.name}
-    kinds = {"" if i.isdigit() else i[:1] for i in indices if i}
-    return "indices that no step connects" if len(kinds) > 1 else ""
-
-
-def _systems(
-    statement: Statement, ring: FlintRing, without: frozenset[str], cases: tuple[Case, ...] = ()
-) -> Iterator[System]:
-    try:
-        yield system(statement, ring, cases, without)
-    except Split as split:
-        if len(cases) > MOST:
-            raise Beyond("too many cases") from None
-        yield from _systems(statement, ring, without, (*cases, ("nonnegative", split.poly)))
-        yield from _systems(statement, ring, without, (*cases, ("nonnegative", -split.poly)))
 
 
 def _satisfiable(work: Work) -> None:
@@ -346,57 +235,3 @@ def _near(work: Work, model: Mapping[str, Fraction] | None) -> Failure | None:
 def _refuted(work: Work, failure: Failure) -> Answer:
     method = "undefined" if failure.undefined else "exact instance"
     return Answer(Verdict.refuted, method, counterexample=example(work, failure), assumed=work.statement.assumed)
-
-
-def example(work: Work, failure: Failure) -> Counterexample:
-    """Return the counterexample that an instance makes."""
-    symbols = work.statement.theory.theory.symbols
-    point = {n: v for n, v in failure.instance.values.items() if n in work.shown}
-    exact = {n: fraction(v) for n, v in point.items() if isinstance(v, fmpq)}
-    central = {n for n in exact if n in symbols and symbols[n].scalar}
-    sizes = {s: 1 for n in exact if n in symbols for s in (symbols[n].rows, symbols[n].cols) if s}
-    left, right = (_plain(x) for x in (failure.left, failure.right))
-    also = {n: words for n, words in failure.instance.roots.items() if n in work.shown}
-    sides = ("", "")
-    if failure.undefined:
-        sides = failure.undefined, ""
-    elif left is None or right is None or also:
-        sides = _text(failure.left), _text(failure.right)
-    return NumberExample(
-        sizes or {"1": 1}, {_at_start(n): ((x,),) for n, x in exact.items() if n not in central},
-        () if left is None or any(sides) else ((left,),), () if right is None or any(sides) else ((right,),),
-        work.statement.equations[failure.number].relation, {n: exact[n] for n in exact if n in central},
-        also=also, sides=sides,
-    )  # fmt: skip
-
-
-def _shown(statement: Statement, known: System) -> list[str]:
-    """Return the letters of an instance that a reader needs, without inverses and what the claim does not mention."""
-    theory, used = statement.theory.theory, letters_of(statement)
-    hidden = {d.name for d in theory.declared.values() if isinstance(d, DeclaredInverse)}
-    for item in theory.declared.values():
-        match item:
-            case Declared(name=name, statement=Equation(lhs=Symbol() as lhs)):
-                if known.solved.get(name_of(lhs)) == name and name_of(lhs) not in used:
-                    hidden.add(name_of(lhs))
-            case _:
-                pass
-    order = [n for n in theory.symbols if n in theory.symbols]
-    names = [n for n in names_in(statement) if n not in hidden and not n.startswith("d/dt ")]
-    return sorted(names, key=lambda n: order.index(n) if n in order else len(order))
-
-
-def _at_start(name: str) -> str:
-    """Return how a reader knows a letter: P(t)@t0 is P(0)."""
-    stem, _, time = name.partition("@")
-    return stem.removesuffix("(t)") + "(0)" if time == "t0" else name
-
-
-def _plain(value: Any) -> Fraction | None:
-    return fraction(value) if isinstance(value, fmpq) else None
-
-
-def _text(value: Any) -> str:
-    """Write a number exactly, or its first digits."""
-    exact = _plain(value)
-    return str(exact) if exact is not None else f"{value.str(12, radius=False)}…"

@@ -12,11 +12,12 @@ from derive.functions import Abs, Max, Power, Quotient, Root
 from derive.interpret.statement import Statement
 from derive.latex import latex, plain
 from derive.scalar.argue import Failed, Prover, Unknown
-from derive.scalar.decision import Work
 from derive.scalar.evaluate import Undefined, Unsure, holds
+from derive.scalar.flint_ring import rational
 from derive.scalar.instances import Instance
-from derive.scalar.ratio import Beyond
-from derive.terms import Equation, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero
+from derive.scalar.ratio import Beyond, name_of
+from derive.scalar.work import Work
+from derive.terms import Equation, Inverse, Neg, Number, Product, Sum, Symbol, Term, Transpose, Zero, walk
 from derive.theory.claims.base import SCALAR
 
 __all__ = ["Edited", "edits", "nearest_scalar"]
@@ -50,7 +51,7 @@ def nearest_scalar(statement: Statement, *, seconds: float = 2.0) -> Nearest | N
     if not points or work.moving:
         return None
     for edit, changed in _changes(statement.equations[0], letters):
-        if not all(_holds(changed, p) for p in points):
+        if not all(_holds(changed, p) for p in points) or _says_nothing(changed):
             continue
         other = replace(wide, equations=(changed,))
         if _proved(other, work, deadline):
@@ -75,6 +76,13 @@ def _holds(equation: Equation, instance: Instance) -> bool:
         return holds(equation, instance.values)[0] is not False
     except (Undefined, Unsure, Beyond):
         return False
+
+
+def _says_nothing(equation: Equation) -> bool:
+    """Tell whether an equation holds whatever its letters are, such as P = 0 + P."""
+    names = sorted({name_of(n) for side in (equation.lhs, equation.rhs) for n in walk(side) if isinstance(n, Symbol)})
+    point = {name: rational(Fraction(7 + 2 * i, 3 + i)) for i, name in enumerate(names)}
+    return equation.relation == "=" and _holds(equation, Instance(point))
 
 
 def _spread(work: Work) -> list[Instance]:

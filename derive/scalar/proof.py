@@ -16,8 +16,9 @@ from derive.interpret.statement import Statement
 from derive.kernel import Alphabet, Poly, Rejected
 from derive.real import Sign, replay_sign
 from derive.rules import Context, Fact
+from derive.scalar.hypotheses import system
 from derive.scalar.ratio import Beyond, KernelRing, Numbers, Ratio, plain, upright
-from derive.scalar.system import Case, Split, System, proportional, sign_of, system
+from derive.scalar.system import Case, Split, System, proportional, sign_of
 
 __all__ = [
     "ANSWERS", "Either", "Factor", "Leaf", "Proof", "Reason", "Square", "Step", "Tree", "Turned", "accept", "claims_of",

@@ -1,34 +1,25 @@
-"""What a theory says of real numbers: letters that others stand for, facts of sign, and equations that remain.
+"""Letters of real numbers with values, facts of sign, and equations that remain.
 
-With every dimension 1, each relation of a theory is an equation between fractions. One that is linear in a letter, with
-a factor that is known not to vanish, gives that letter away: the Riccati equation gives the process noise, so that
-covariance and plant stay free. A hypothesis M >= 0 becomes a fact of sign, a stabilising solution the closed condition
-of the strong one. Part of the trust base: what is read here is what a proof may use. Standard library only.
+An equation between fractions that is linear in a letter, with a factor that is known not to vanish, gives that letter
+away: the Riccati equation gives the process noise, so that covariance and plant stay free. Part of the trust base.
+Standard library only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import combinations
 from typing import Any
 
-from derive.context import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse
-from derive.interpret.statement import Statement
 from derive.kernel import ANY, Poly
-from derive.latex import plain as text
-from derive.real import CIRCLE
 from derive.scalar.ratio import Beyond, Numbers, Ratio, Ring, name_of, plain
-from derive.terms import Block, Dot, Equation, Neg, Number, Product, Sum, Symbol, Term, Zero, walk
+from derive.terms import Symbol, Term
 
-__all__ = ["POWERS", "ROOTS", "Case", "Split", "System", "names_in", "system"]
+__all__ = ["KINDS", "POWERS", "ROOTS", "Case", "Choice", "Split", "System", "proportional", "sign_of"]
 
 KINDS = {"≥": "nonnegative", "⪰": "nonnegative", ">": "positive", "≻": "positive", "≠": "nonzero"}
-ONE = Number(Fraction(1))
 POWERS = tuple(f"exp {i}" for i in range(1, 5))  # letters for exponentials
 ROOTS = tuple(f"√{i}" for i in range(1, 9))  # letters for roots
-COMPLEX = ("s", "z", "j")
 
 Choice = tuple[tuple[str, Any], ...]  # kinds of fact and polynomials, of which one holds
 Case = tuple[str, Poly]  # "=" or a kind of fact, and the polynomial in letters
@@ -40,16 +31,6 @@ class Split(Exception):  # noqa: N818 - a question, no fault
     def __init__(self, poly: Poly):
         super().__init__("a sign decides")
         self.poly = poly
-
-
-@dataclass(frozen=True)
-class Condition:
-    """A hypothesis of sign: term of a kind, and the name of the declaration that it comes from."""
-
-    name: str
-    kind: str
-    term: Term
-    origin: str
 
 
 @dataclass
@@ -126,7 +107,7 @@ class System:
         if len(plain.terms) == 1 and kind in ("nonnegative", "positive", "nonzero"):
             (((names, _), c),) = plain.terms.items()
             if len(names) == 1:
-                self._know(names[0], 0 if kind == "nonzero" else 1 if c > 0 else -1, kind != "nonnegative")
+                self.know(names[0], 0 if kind == "nonzero" else 1 if c > 0 else -1, kind != "nonnegative")
                 self._strictly(name, names[0], origin)
 
     def _strictly(self, name: str, letter: str, origin: str) -> None:
@@ -138,7 +119,8 @@ class System:
             turned = value if sign > 0 else -value
             self.facts[f"{name}, strictly"], self.origins[f"{name}, strictly"] = ("positive", turned), origin
 
-    def _know(self, letter: str, sign: int, strict: bool) -> None:
+    def know(self, letter: str, sign: int, strict: bool) -> None:
+        """Note the sign of a letter (0: only that it is not zero), and whether it is strict."""
         known, above = self.signs.get(letter, (0, False))
         self.signs[letter] = known or sign, above or strict
 
@@ -161,7 +143,7 @@ class System:
                     del self.relations[name]
                     continue
                 self.relations[name] = top
-                found = None if name in dict.fromkeys(r for _, r in self.roots) else self._solve(top, "")
+                found = None if name in dict.fromkeys(r for _, r in self.roots) else self.solve(top, "")
                 if found is not None:
                     del self.relations[name]
                     self.give(*found, self.origins.get(name, name))
@@ -209,13 +191,13 @@ class System:
         if not any(m for m, _ in plain):
             self.impossible = self.impossible or name
             return
-        found = self._solve(top, name_of(lhs) if isinstance(lhs, Symbol) else "")
+        found = self.solve(top, name_of(lhs) if isinstance(lhs, Symbol) else "")
         if found is None:
             self.relations[name] = top
         else:
             self.give(*found, name)
 
-    def _solve(self, top: Any, wanted: str) -> tuple[str, Ratio] | None:
+    def solve(self, top: Any, wanted: str) -> tuple[str, Ratio] | None:
         """Return a letter in which a polynomial is linear, with a factor that does not vanish, and its value."""
         plain = self.ring.poly(top)
         counts = {x: max(m.count(x) for m, _ in plain.terms) for m, _ in plain.terms for x in m}
@@ -356,205 +338,3 @@ def _inserted(value: Ratio, numbers: Numbers) -> Ratio:
         for _ in range(exponent):
             total = numbers.over(total, below)
     return total
-
-
-# ---------------------------------------------------------------------------------------------- reading a theory
-def system(
-    statement: Statement, ring: Ring, cases: Sequence[Case] = (), without: frozenset[str] = frozenset()
-) -> System:
-    """Read all that a statement's theory says of numbers; ``cases`` are assumed as well, ``without`` is left out.
-
-    Raises:
-        Beyond: an assumption that is not about real numbers.
-        Split: an assumption has |.| of a number whose sign is not known.
-    """
-    found = System(ring)
-    theory, assumed = statement.theory.theory, frozenset(statement.assumed)
-    unknown = [e.relation for e in statement.theory.conditions if e.relation not in (*KINDS, "=", ":=")]
-    if unknown:
-        raise Beyond(f"the relation {unknown[0]} is not decided between numbers")
-    if statement.scalar:
-        found.values |= {n: found.numbers().number(1) for n in theory.sizes() if n in theory.symbols}
-    items = [item for name, item in theory.declared.items() if name not in without]
-    conditions = [c for item in items for c in _conditions(item, assumed)]
-    extra = [e for e in statement.theory.conditions if text(e) not in without]
-    conditions += [Condition(text(e), KINDS[e.relation], e.lhs - e.rhs, text(e)) for e in extra if e.relation in KINDS]
-    for c in conditions:  # the signs of letters come first: they tell what may be divided by
-        match c.term:
-            case Symbol() | Sum((Symbol(), Neg(Zero() | Number(Fraction(numerator=0))))):
-                letter = c.term if isinstance(c.term, Symbol) else c.term.addends[0]
-                found._know(name_of(letter), 0 if c.kind == "nonzero" else 1, c.kind != "nonnegative")  # type: ignore[arg-type]
-            case Neg(Symbol() as letter) if c.kind != "nonzero":
-                found._know(name_of(letter), -1, c.kind == "positive")
-            case _:
-                pass
-    for i, (relation, poly) in enumerate(cases):
-        if relation != "=":
-            found.fact(f"case {i + 1}", relation, ring.of(poly), "")
-    for i, (relation, poly) in enumerate(cases):
-        if relation == "=":
-            value = found.numbers().evaluate(poly)
-            solved = found._solve(value.top, "")
-            name = f"case {i + 1}"
-            found.origins[name] = ""
-            if solved is not None:
-                found.give(*solved, "")
-            else:
-                found.relations[name] = value.top
-    user = [(text(e), e.lhs, e.rhs) for e in extra if e.relation in ("=", ":=")]
-    user += [e for item in items if item.name in assumed for e in _equations(item, strict=True)]
-    for name, lhs, rhs in user:
-        found.equation(name, lhs, rhs)
-    for item in items:
-        if item.name not in assumed:
-            for name, lhs, rhs in _equations(item, strict=False):
-                try:
-                    found.equation(name, lhs, rhs)
-                except Beyond:
-                    continue
-    for c in conditions:
-        try:
-            poly = found.numbers().same_sign(found.numbers().read(c.term))
-            found.fact(c.name, c.kind, poly, c.origin)
-        except Beyond:
-            if c.origin in assumed or c.origin in map(text, extra):
-                raise
-    for item in items:
-        if isinstance(item, DeclaredFact) and item.case and item.name not in assumed:
-            found.alternatives += _detectable(item, found)
-    found.settle()
-    found.consulted.clear()
-    return found
-
-
-def _equations(item: object, strict: bool) -> Iterator[tuple[str, Term, Term]]:
-    """Iterate over the equations that a declaration makes between numbers."""
-    match item:
-        case Declared(name=name, statement=Equation(lhs, "=" | ":=", rhs), case=False):
-            sides = _entries(lhs, rhs)
-            yield from ((name if i == 0 else f"{name} {i + 1}", a, b) for i, (a, b) in enumerate(sides))
-        case DeclaredInverse(name=name, of=of):
-            yield name, Symbol(name, scalar=True) * of, ONE
-        case DeclaredAtom() if strict:
-            raise Beyond("a function that is assumed")
-        case _:
-            return
-
-
-def _entries(lhs: Term, rhs: Term) -> list[tuple[Term, Term]]:
-    if isinstance(lhs, Block) and isinstance(rhs, Block):
-        pairs = zip((x for r in lhs.rows for x in r), (x for r in rhs.rows for x in r), strict=True)
-        return list(pairs)
-    return [(lhs, rhs)]
-
-
-def _conditions(item: object, assumed: frozenset[str]) -> Iterator[Condition]:
-    """Iterate over what a declaration says of signs; a stabilising solution may be at the boundary."""
-    match item:
-        case Declared(name=name, statement=Equation(lhs, relation, rhs), case=False) if relation in KINDS:
-            plain = isinstance(rhs, Zero) or rhs == Number(Fraction(0))
-            yield from _minors(name, KINDS[relation], lhs if plain else lhs - rhs)
-        case DeclaredFact(name=name, kind=kind, matrix=matrix, case=case):
-            firm = "nonnegative" if case and name not in assumed else "positive"
-            match kind:
-                case "hurwitz":
-                    yield Condition(name, firm, Neg(matrix), name)
-                case "schur":
-                    yield Condition(f"{name}, below", firm, ONE - matrix, name)
-                    yield Condition(f"{name}, above", firm, ONE + matrix, name)
-                case "invertible":
-                    yield Condition(name, "nonzero", matrix, name)
-                case "psd":
-                    yield from _minors(name, "nonnegative", matrix)
-                case "pd":
-                    yield from _minors(name, "positive", matrix)
-                case _:
-                    return
-        case _:
-            return
-
-
-def _minors(name: str, kind: str, matrix: Term) -> Iterator[Condition]:
-    """Iterate over the principal minors of a block matrix of numbers, of up to three rows."""
-    if not isinstance(matrix, Block):
-        yield Condition(name, kind, matrix, name)
-        return
-    size = len(matrix.rows)
-    if size > 3 or any(len(row) != size for row in matrix.rows) or any(isinstance(x, Block) for x in matrix.children()):
-        return
-    for k in range(1, size + 1):
-        for chosen in combinations(range(size), k):
-            yield Condition(f"{name} {chosen}", kind, _determinant(matrix.rows, chosen, chosen), name)
-
-
-def _determinant(rows: tuple[tuple[Term, ...], ...], i: tuple[int, ...], j: tuple[int, ...]) -> Term:
-    if len(i) == 1:
-        return rows[i[0]][j[0]]
-    parts = [Product((rows[i[0]][c], _determinant(rows, i[1:], (*j[:n], *j[n + 1 :])))) for n, c in enumerate(j)]
-    return Sum(tuple(Neg(p) if n % 2 else p for n, p in enumerate(parts)))
-
-
-def _detectable(item: DeclaredFact, found: System) -> list[Choice]:
-    """Return the alternatives of X - G H with the gain G: the output sees the state, H ≠ 0, or X is stable."""
-    match item.matrix:
-        case Sum((X, Neg(Product((G, H))))):
-            pass
-        case _:
-            return []
-    gain = G if isinstance(G, Symbol) and name_of(G) in found.solved else H
-    seen = H if gain is G else G
-    numbers = found.numbers()
-    x, h = numbers.read(X), numbers.read(seen)
-    if item.kind == "hurwitz":
-        stable: Ratio = numbers.negative(x)
-    else:
-        stable = numbers.add(numbers.number(1), numbers.negative(numbers.multiply(x, x)))
-    return [(("nonzero", h.top), ("positive", numbers.same_sign(stable)))]
-
-
-# ---------------------------------------------------------------------------------------------- names
-def names_in(statement: Statement) -> list[str]:
-    """Return the letters of real numbers that a statement and its theory use, those that others are made of last."""
-    found: dict[str, None] = {}
-    theory = statement.theory.theory
-    sides = [t for e in (*statement.equations, *statement.theory.conditions) for t in (e.lhs, e.rhs)]
-    claimed = {name for t in sides for name in _names(t)}
-    roots = {*theory.families, *(f.index for f in theory.families.values())}
-    barred = {n for n in claimed if n in theory.complex and (n in COMPLEX or not theory.symbols[n].scalar)} | {
-        n for n in claimed if n in roots or n == CIRCLE
-    }
-    if barred:
-        raise Beyond(f"{min(barred)} is no real letter")
-    if claimed & (theory.random | theory.uncentred):
-        raise Beyond("signals are no numbers")
-    for item in theory.declared.values():
-        if isinstance(item, DeclaredInverse):
-            found[item.name] = None
-        found |= dict.fromkeys(name for t in _terms(item) for name in _names(t))
-    return list(found | dict.fromkeys(sorted(claimed)))
-
-
-def _terms(item: object) -> tuple[Term, ...]:
-    match item:
-        case Declared(statement=statement):
-            return statement.lhs, statement.rhs
-        case DeclaredFact(matrix=matrix):
-            return (matrix,)
-        case DeclaredInverse(of=of) | DeclaredAtom(of=of):
-            return (of,)
-        case _:
-            return ()
-
-
-def _names(term: Term) -> Iterator[str]:
-    for node in walk(term):
-        if isinstance(node, Symbol):
-            try:
-                yield name_of(node)
-            except Beyond:
-                continue
-        if isinstance(node, Dot):
-            yield from ("d/dt " + n.name for n in walk(node) if isinstance(n, Symbol) and n.args)
-
-
-Known = Mapping[str, Ratio]

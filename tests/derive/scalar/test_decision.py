@@ -387,6 +387,7 @@ def test_nearest(theory: str, latex: str, edit: str | None, true: str):
 
 def test_no_nearest_where_no_single_edit_is_true():
     assert nearest_scalar(statement(KB, "P = A + 17 C^3")) is None
+    assert nearest_scalar(statement(KB, "P = 0")) is None  # not P = 0 + P
 
 
 def test_answers_do_not_depend_on_order():
