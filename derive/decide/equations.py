@@ -10,7 +10,7 @@ from derive.decide.order import prove_order
 from derive.decide.parts import Part, oriented, rule_of
 from derive.decide.signals import expanded, inside
 from derive.decide.traces import prove_trace_order
-from derive.decide.workspace import Workspace
+from derive.decide.workspace import MOST, Workspace
 from derive.derivation import Proof, claims, order_claim
 from derive.kernel import Poly, Rejected
 from derive.rules import Grid, expect
@@ -68,8 +68,11 @@ def _expectation(equation: Equation, work: Workspace) -> Part | None:
     return None
 
 
-def refute_equation(equation: Equation, work: Workspace) -> Counterexample | None:
-    """Search for a counterexample to one equation or inequality; blocks of an equation are tried one by one."""
+def refute_equation(equation: Equation, work: Workspace, most: int = MOST) -> Counterexample | None:
+    """Search for a counterexample to one equation or inequality; blocks of an equation are tried one by one.
+
+    At most ``most`` instances are tried for an inequality.
+    """
     rule = rule_of(equation)
     if rule == "expectation":
         return _refute_expectation(equation, work)
@@ -81,14 +84,14 @@ def refute_equation(equation: Equation, work: Workspace) -> Counterexample | Non
         left, right = (lower_trace(side, work.reading) for side in (equation.lhs, equation.rhs))
         if left.rows != right.rows:
             right = Poly(right.terms, left.rows, left.cols)
-        return work.refute(left, right, equation.relation, trace=True)
+        return work.refute(left, right, equation.relation, trace=True, most=most)
     left = lower(equation.lhs, work.reading)
     difference = order_claim(equation, work.reading)
     if len(left) > 1 and equation.relation in ("⪰", "≻"):
         return None
     for row, others in zip(left, difference, strict=True):
         for p, d in zip(row, others, strict=True):
-            found = work.refute(p, p - d, equation.relation)
+            found = work.refute(p, p - d, equation.relation, most=most)
             if found:
                 return found
     return None

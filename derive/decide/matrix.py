@@ -24,6 +24,8 @@ from derive.interpret.statement import Statement
 from derive.kernel import Poly, Rejected
 from derive.terms import lower
 
+FIRST = 60  # instances that are tried for an inequality before a proof is looked for
+
 __all__ = ["decide_matrix", "prove_statement"]
 
 
@@ -104,11 +106,12 @@ def _prove(statement: Statement, work: Workspace) -> tuple[list[Part] | None, An
     open_ = False
     for i, equation in enumerate(statement.equations):
         plain = oriented(equation, work.reading)
-        part = prove_equation(plain, work)
+        found = None if plain.relation == "=" else refute_equation(plain, work, FIRST)
+        part = prove_equation(plain, work) if found is None else None
         if part is not None:
             proof.append(part)
             continue
-        found = refute_equation(plain, work)
+        found = found or refute_equation(plain, work)
         if found is not None:
             return None, _refuted(statement, i, found)
         open_ = True

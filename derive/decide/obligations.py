@@ -21,6 +21,7 @@ from derive.terms import Inverse, Neg, Product, Term, Transpose, lower
 __all__ = ["Undefined", "Unjustified", "invert", "justify", "justify_given"]
 
 DEPTH = 3  # how often a matrix may be traced back to another one
+FIRST = 20  # instances that are tried before a reason is looked for
 SINGULAR = 1500  # instances that are tried for one where a matrix is singular
 
 
@@ -61,10 +62,14 @@ def justify(term: Term, work: Workspace, refuting: bool = True, supposing: bool 
     if len(grid) != 1 or len(grid[0]) != 1 or grid[0][0].rows != grid[0][0].cols:
         raise Rejected("the inverse of a block matrix, or of a matrix that is not square, has no rule")
     poly = grid[0][0]
-    if work.inverse(poly) is not None or _by_factors(term.body, work) or invert(poly, work) is not None:
+    if work.inverse(poly) is not None or _by_factors(term.body, work):
         return
-    found = work.refute(poly, relation="invertible", most=SINGULAR) if refuting else None
-    if found and not moves(poly, work.reading.context, work.reading.inverses):  # a generic point avoids it
+    refuting = refuting and not moves(poly, work.reading.context, work.reading.inverses)  # a generic point avoids it
+    found = work.refute(poly, relation="invertible", most=FIRST) if refuting else None
+    if found is None and invert(poly, work) is not None:
+        return
+    found = found or (work.refute(poly, relation="invertible", most=SINGULAR) if refuting else None)
+    if found:
         raise Undefined(term.body, found)
     if not supposing:
         raise Unjustified(term.body)

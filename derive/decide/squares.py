@@ -33,7 +33,7 @@ def usual_squares(claim: Poly, strict: bool, work: Workspace) -> Iterator[tuple[
         return
     solution = nonnegative_solution(_equations(claim, squares, instances, work))
     if solution is not None:
-        found = zip(squares, solution, strict=True)
+        found = zip(squares, solution or [Fraction(0)] * len(squares), strict=True)
         yield tuple(Square(c, (), s.factor, s.fact) for s, c in found if c)
 
 

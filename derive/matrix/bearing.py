@@ -38,7 +38,8 @@ def bearing(problem: Hypotheses, wanted: set[str]) -> Bearing:
     """Return the hypotheses that bear on the wanted letters."""
     relations, inverses = _peel(problem, wanted)
     facts = {n: f for n, f in problem.facts.items() if f.kind != "initial"}
-    groups: list[set[str]] = [unknowns(p) for p in relations.values()]
+    known = {n: unknowns(p) for n, p in relations.items()}
+    groups: list[set[str]] = list(known.values())
     groups += [set[str]().union(*map(unknowns, blocks(f))) for f in facts.values()]
     groups += [unknowns(p) | {name} for name, p in inverses.items()]
     letters, size = set(wanted), -1
@@ -48,7 +49,7 @@ def bearing(problem: Hypotheses, wanted: set[str]) -> Bearing:
             if group & letters:
                 letters |= group
     return Bearing(
-        {n: p for n, p in relations.items() if unknowns(p) & letters},
+        {n: p for n, p in relations.items() if known[n] & letters},
         {n: p for n, p in problem.relations.items() if not unknowns(p)},
         {n: f for n, f in facts.items() if any(unknowns(p) & letters for p in blocks(f))},
         {n: p for n, p in inverses.items() if n in letters},
@@ -73,9 +74,10 @@ def _peel(problem: Hypotheses, wanted: set[str]) -> tuple[dict[str, Poly], dict[
     implied = {f for name, poly in inverses.items() for f in _inverse_relations(problem, name, poly)}
     relations = {n: p for n, p in problem.relations.items() if p not in implied and unknowns(p)}
     fixed = wanted | {a for f in problem.facts.values() for p in blocks(f) for a in unknowns(p)}
+    letters = {p: unknowns(p) for p in chain(relations.values(), inverses.values())}
     while True:
         counts: dict[str, int] = {}
-        for a in chain(*map(unknowns, chain(relations.values(), inverses.values()))):
+        for a in chain(*(letters[p] for p in chain(relations.values(), inverses.values()))):
             counts[a] = counts.get(a, 0) + 1
         gone = [n for n in inverses if n not in fixed and n not in counts]
         for n in gone:
@@ -100,13 +102,12 @@ def _defines_unused(poly: Poly, counts: Mapping[str, int], fixed: set[str], prob
 
     The variation of constants e(t) = Phi(t,t0) e(t0) + (an integral) does so for e(t0), as Phi(t,t0) is invertible.
     """
-    turned = problem.alphabet.transpose(poly)
     if any(s.startswith("∫") for m, _ in poly.terms for s in m):
         starts = [w[1] for m, w in poly.terms if not m and len(w) == 2 and parts(w[0])[2] == ("t", "t0")]
         return any(parts(a)[2] == ("t0",) and a not in fixed and counts.get(a) == 1 for a in starts)
     for letter in lone(poly):
         symmetric = problem.alphabet.letters[parts(letter)[0]].symmetric
         free = letter not in fixed and letter not in problem.inverses and counts[letter] == 1
-        if free and (not symmetric or turned in (poly, -poly)):
+        if free and (not symmetric or problem.alphabet.transpose(poly) in (poly, -poly)):
             return True
     return False

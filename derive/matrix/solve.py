@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from derive.kernel import Poly, parts
-from derive.matrix.instance import Instance, stack
+from derive.matrix.instance import Instance, stack, unknowns
+
+if TYPE_CHECKING:
+    from flint import fmpq
 
 __all__ = ["Rule"]
 
@@ -34,7 +39,9 @@ def _invert(rule: Rule, instance: Instance) -> bool:
 
 
 def _solve(rule: Rule, instance: Instance) -> bool:
-    """Solve poly(X) = 0, linear in X, for the solution whose free entries are zero."""
+    """Solve poly(X) = 0, linear in X, for the solution whose free entries are zero; X = f is read off."""
+    if _read_off(rule, instance):
+        return True
     directions = _directions(rule.target, instance)
     zero = directions[0] * 0
     start = _entries(rule, instance, zero)
@@ -49,6 +56,28 @@ def _solve(rule: Rule, instance: Instance) -> bool:
         total += directions[pivot] * echelon[i, len(directions)]
     instance.values[rule.target] = total
     return True
+
+
+def _read_off(rule: Rule, instance: Instance) -> bool:
+    """Set X = -f / c for a relation c X + f with X alone in one term; False if it is not of this form."""
+    key = (), (rule.target,)
+    symmetric = instance.alphabet.letters[parts(rule.target)[0]].symmetric
+    rest = Poly({k: c for k, c in rule.poly.terms.items() if k != key}, rule.poly.rows, rule.poly.cols)
+    if key not in rule.poly.terms or rule.target in unknowns(rest):
+        return False
+    factor = rule.poly.terms[key]
+    value = instance.evaluate(rest) * fmpq_of(-1 / factor)
+    if symmetric and value != value.transpose():
+        return False
+    instance.values[rule.target] = value
+    return True
+
+
+def fmpq_of(value: Fraction) -> fmpq:
+    """Return a fraction of the standard library as a rational number of FLINT."""
+    from flint import fmpq
+
+    return fmpq(value.numerator, value.denominator)
 
 
 def _entries(rule: Rule, instance: Instance, value) -> list:

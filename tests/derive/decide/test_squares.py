@@ -42,6 +42,14 @@ def test_nonnegative_solutions(seed):
         assert all(sum(a * c for a, c in zip(row[:-1], found, strict=True)) == row[-1] for row in rows)
 
 
+def test_no_equation_is_solved_by_nothing():
+    assert nonnegative_solution([]) == []
+
+
+def test_a_claim_that_is_zero_is_a_sum_of_no_squares():
+    assert answer(r"P \succeq 2 P", DT, ("P = 0",)).verdict is Verdict.proved
+
+
 ORDER = [
     (r"P_k \succeq P_{k+1}", DT, (r"P_{k-1} \succeq P_k",)),
     (r"P_{k+1} \succeq P_k", DT, (r"P_k \succeq P_{k-1}",)),
