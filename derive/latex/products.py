@@ -147,8 +147,6 @@ class Products(Operators):
         """Read an operand with its scripts; a letter and a group behind it may be one factor or two."""
         start = self.look()
         node = self.atom()
-        if self.open_end == self.at or start.text in ("sum", "prod", "int"):
-            return [node]  # a script behind it would be one of its last letter
         before = node.factors[:-1] if isinstance(node, Times) else ()
         node = node.factors[-1] if isinstance(node, Times) else node
         sub, sup, exponents = self.marks()

@@ -228,9 +228,7 @@ def _joined(tokens: list[Token]) -> list[Token]:
         first, last = content[0], out[-1] if out else Token("break", "", 0, 0)
         if not out or separator is None:
             out.extend(content)
-        elif (first.kind == last.kind == "relation" and first.text == last.text) or (
-            _sign(first) and _same(first, last)
-        ):
+        elif (first.kind == "relation" or _sign(first)) and _same(first, last):
             out.extend(content[1:])
         elif _dangling(last) or first.kind == "relation" or (_sign(first) and _continues(segment, content)):
             out.extend(content)

@@ -165,15 +165,17 @@ def main(count: int, seed: int = 0) -> None:
     rng, formulas = random.Random(seed), real()
     good = failures = 0
     longest, slowest = 0.0, ""
-    for _ in range(count):
+    for i in range(count):
+        if i and not i % 20_000:
+            print(f"{i} inputs: {good} read, {failures} failures, longest {longest:.3f} s", flush=True)
         text = source(rng, formulas)
-        start = time.perf_counter()
+        start = time.process_time()
         try:
             good += check(text)
         except Exception as error:
             failures += 1
-            print(f"{type(error).__name__}: {error!s:.300}\n  {text!r:.500}")
-        seconds = time.perf_counter() - start
+            print(f"{type(error).__name__}: {error!s:.300}\n  {text!r}", flush=True)
+        seconds = time.process_time() - start
         if seconds > longest:
             longest, slowest = seconds, text
     print(f"{count} inputs: {good} read, {failures} failures, longest {longest:.3f} s for {len(slowest)} characters")
