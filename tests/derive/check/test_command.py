@@ -163,6 +163,14 @@ def test_the_command_as_a_process(note):
     assert [c["verdict"] for c in json.loads(done.stdout)["claims"]] == ["proved", "refuted"]
 
 
+INTERRUPTIBLE = """
+import signal
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in what a shell runs in the background
+from derive.cli import main
+main()
+"""
+
+
 def runs(pid):
     """Whether a process runs, a moment after it was ended."""
     for _ in range(500):
@@ -176,7 +184,7 @@ def runs(pid):
 def test_an_interruption_ends_the_command_cleanly(note, tmp_path):
     lines = "\n".join(json.dumps({"latex": GAIN, "theory": "luenberger-dt"}) for _ in range(3000))
     (tmp_path / "many.jsonl").write_text(lines, encoding="utf-8")
-    command = [sys.executable, "-m", "derive", "check", "many.jsonl"]
+    command = [sys.executable, "-c", INTERRUPTIBLE, "check", "many.jsonl"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     while process.poll() is None and not children.read_text():
