@@ -50,7 +50,7 @@ def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
             return Result(claim, "undecided", Answer(Verdict.undecided, notes=(NO_THEORY,)))
         statement = _understood(item, display)
         read_as, found_shapes = echo(statement), shapes(statement)
-        answer = _decided(statement, seconds, decide)
+        answer = _decided(statement, seconds, decide, explain=not claim.file)
     except Misfit as error:
         return Result(claim, "refuted", Answer(Verdict.refuted, "types", notes=(str(error),)))
     except InputError as error:
@@ -119,12 +119,15 @@ def read_assumed(setting: Setting) -> list[Display]:
     return found
 
 
-def _decided(statement: Statement, seconds: float, decide: Decide | None) -> Answer:
-    """Decide a statement; what fails by itself leaves the claim undecided, and says so."""
-    if decide is None:
-        from derive.decide import decide
+def _decided(statement: Statement, seconds: float, decide: Decide | None, explain: bool = False) -> Answer:
+    """Decide a statement; what fails by itself leaves the claim undecided, and says so.
+
+    A claim that stands by itself is told which of the hypotheses it cannot do without, by an instance each.
+    """
+    from derive.decide import decide as usual
+
     try:
-        return decide(statement, seconds=seconds)
+        return decide(statement, seconds=seconds) if decide else usual(statement, seconds=seconds, explain=explain)
     except InputError:
         raise
     except MemoryError:

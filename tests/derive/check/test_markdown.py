@@ -43,6 +43,7 @@ def inline(text):
         ("\\begin{align}\nP &= Q\n\\end{align}", ("\\begin{align}\nP &= Q\n\\end{align}", 1, "")),
         ("$$a \\$ b$$", ("a \\$ b", 1, "")),
         ("$$P$$\n$$ = Q$$", ("P  \n   = Q", 1, "")),  # goes on in the next display
+        ("$$P$$\n\n$$= Q$$\n (2)", ("P  \n\n  = Q", 1, "2")),
     ],
 )
 def test_a_display_is_found_in_its_line_with_its_name(text, expected):
