@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from derive.analysis import is_scalar
 from derive.context import Declared, DeclaredFact, DeclaredInverse, Theory, terms_of
-from derive.functions import is_scalar
 from derive.interpret.shapes import NotUnderstood, rebuilt
 from derive.kernel import Rejected
 from derive.latex import plain

@@ -104,7 +104,7 @@ def _letters(equations: Sequence[Equation], within: Sequence[Term]) -> set[str]:
     """Return the names of the letters in equations and terms, and the times at which they are used as "@τ"."""
     terms = (*(side for e in equations for side in (e.lhs, e.rhs)), *within)
     found = [n for term in terms for n in walk(term) if isinstance(n, Symbol)]
-    return {n.name for n in found} | {f"@{time}" for n in found for time in n.args}
+    return {x for n in found for x in (n.name, n.letter, *(f"@{time}" for time in n.args))}
 
 
 def _moving(displays: Sequence[s.Display], reader: Reader) -> frozenset[str]:

@@ -51,7 +51,7 @@ class ClaimTheory:
     def about(self, letters: Collection[str]) -> ClaimTheory:
         """Return the theory with no more than what bears on the given letters; "@τ" says that one is used at τ.
 
-        SCALAR among them says that all dimensions are 1.
+        "Phi@t,τ" is one at two times; SCALAR among them says that all dimensions are 1.
         """
         return about(self.outline, frozenset(letters)) if self.outline else self
 
@@ -122,6 +122,11 @@ class Draft:
         found = sorted(name[1:] for name in self.used if name.startswith("@"))
         return ["t", *(time for time in found if time != "t")]
 
+    def pairs(self, name: str) -> list[tuple[str, str]]:
+        """Return the pairs of times at which a letter such as Phi is used."""
+        used = sorted(letter.partition("@")[2] for letter in self.used if letter.startswith(name + "@"))
+        return [(one, two) for one, _, two in (times.partition(",") for times in used)]
+
     def at(self, stem: str, index: str) -> Symbol:
         """Return the letter of a family at an index."""
         return self.of(indexed_name(stem + "_#", index))[0]
@@ -191,6 +196,11 @@ class Draft:
     def inverse(self, name: str, of: Term, size: str, because: str, *, symmetric: bool = True) -> None:
         """Declare the letter of an inverse, with the fact by which it exists."""
         self.theory.inverse(name, of, size, symmetric=symmetric, because=because)
+
+
+def named_at(name: str, time: str) -> str:
+    """Return the name of a declaration at a time, plain at t."""
+    return name if time == "t" else f"{name} at {time}"
 
 
 # ------------------------------------------------------------------------------------------------ letters

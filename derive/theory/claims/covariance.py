@@ -7,16 +7,15 @@ are those of the lecture; A, B, N, X without argument are those at t.
 from __future__ import annotations
 
 from functools import cache
+from itertools import permutations, product
 
-from derive.terms import Dot, Expect, Identity, Integral, Term, Zero, block
-from derive.theory.claims.base import Draft, Outline, copy
+from derive.terms import Delta, Dot, Expect, Glyph, Identity, Integral, Term, Zero, block
+from derive.theory.claims.base import Draft, Outline, copy, named_at
 from derive.theory.covariance import theory
 
 KEY, LECTURE = "covariance-ct", "covariance"
 SIGNALS = ("x", "xbar", "xtilde", "n", "nbar", "ntilde")
 BLOCKS = ("X_ss", "X_sv", "X_vv", "X_vv_inf", "N_v", "x_s", "v", "n_v", "A_ss", "A_sv", "A_vv", "B_v")
-STARTS = ("t0", "τ", "τ1", "τ2")
-VARIABLES = ("τ", "τ1")
 
 
 @cache
@@ -30,11 +29,9 @@ def outline() -> Outline:
     names["Phi()"] = s["Phi"].at("t", "τ")
     names |= {"bar x": s["xbar"], "bar n": s["nbar"], "tilde x": s["xtilde"], "tilde n": s["ntilde"]}
     names |= {k: s[k] for k in BLOCKS if k != "X_vv_inf"}
-    names |= {f"{k}()": s[k].at("t", "τ") for k in ("Phi_ss", "Phi_sv", "Phi_vv")}
     names |= {"X_vv(∞)": s["X_vv_inf"], "X_vv^∞": s["X_vv_inf"], "X_vv,∞": s["X_vv_inf"]}
-    return Outline(
-        KEY, t.title, t, names, declare, frozenset({"A", "B", "N", "X", "Phi", *SIGNALS, *BLOCKS}), frozenset("nq")
-    )
+    usual = frozenset({"A", "B", "N", "X", "Phi", *SIGNALS, *BLOCKS, "@τ", "@t0"})
+    return Outline(KEY, t.title, t, names, declare, usual, frozenset("nq"))
 
 
 def declare(d: Draft) -> None:
@@ -44,38 +41,68 @@ def declare(d: Draft) -> None:
     if d.has("Phi"):
         _transition(d)
     if d.has(*SIGNALS):
-        d.given(theory(), "system", "mean", "deviation", "noise deviation", "white noise", "X", "X(t0)")
-        for time in VARIABLES:
-            x, n = d.of("xtilde", "ntilde")
-            d.assume(f"x(t0) and n({time})", Expect(x.at("t0") * n.at(time).T), "=", Zero("n", "q"))
+        _signals(d)
     if d.has(*BLOCKS):
         _filter(d)
 
 
 def _system(d: Draft) -> None:
     A, B, N, X = d.of("A", "B", "N", "X")
-    d.assume("N(t) >= 0", N, "⪰", text="an intensity is not negative")
-    for time in VARIABLES:
+    for time in dict.fromkeys((*d.times(), "τ", "t0")):
         d.assume(f"N({time}) >= 0", N.at(time), "⪰", text="an intensity is not negative")
-    d.assume("X(t) >= 0", X, "⪰", text="a covariance")
-    d.assume("X(t0) >= 0", X.at("t0"), "⪰", text="a covariance")
+        d.assume(f"X({time}) >= 0", X.at(time), "⪰", text="a covariance")
     name = "covariance equation"
     d.assume(name, Dot(X), "=", A * X + X * A.T + B * N * B.T, by=(LECTURE, name))
 
 
+def _signals(d: Draft) -> None:
+    """Declare the system, deviations from the mean, and white noise."""
+    d.given(theory(), "system", "mean")
+    x, mean, dev, n, n_mean, noise = d.of(*SIGNALS)
+    N, X = d.of("N", "X")
+    for time in d.times():
+        d.define(named_at("deviation", time), dev.at(time), x.at(time) - mean.at(time))
+        d.define(named_at("noise deviation", time), noise.at(time), n.at(time) - n_mean.at(time))
+        d.define(named_at("X", time), Expect(dev.at(time) * dev.at(time).T), X.at(time))
+        if time != "t0":
+            start = Expect(dev.at("t0") * noise.at(time).T)
+            d.assume(f"x(t0) and n({time})", start, "=", Zero("n", "q"), "uncorrelated with the noise that follows")
+    for one, two in permutations(d.times(), 2):
+        moment, delta = Expect(noise.at(one) * noise.at(two).T), Delta(one, two)
+        d.assume(f"white noise at {one}, {two}", moment, "=", N.at(one) * delta, "the noise is white")
+
+
 def _transition(d: Draft) -> None:
-    """Declare the transition matrix, and the integral expression of the covariance."""
+    """Declare the transition matrix between the times of a claim, and what it makes of the covariance."""
     A, B, N, X, Phi = d.of("A", "B", "N", "X", "Phi")
-    for start in STARTS:
+    for start in dict.fromkeys((*d.times()[1:], "τ", "t0")):
         d.define(f"Phi(t,{start})", Dot(Phi.at("t", start)), A * Phi.at("t", start))
         d.define(f"Phi({start},{start})", Phi.at(start, start), Identity("n"))
     d.define("Phi(t,t)", Phi.at("t", "t"), Identity("n"))
+    apart = [(one, two) for one, two in d.pairs("Phi") if one != two]
+    if len(apart) > 1:
+        for one, two, three in product(d.times(), repeat=3):
+            if one != two != three:
+                name = f"Phi({one},{three}) by way of {two}"
+                d.assume(name, Phi.at(one, three), "=", Phi.at(one, two) * Phi.at(two, three), "solutions continue")
+    for one, two in apart:
+        d.theory.fact(f"Phi({one},{two}) regular", "invertible", Phi.at(one, two), "a transition has a way back")
     if d.has("X"):
-        free = Phi.at("t", "t0") * X.at("t0") * Phi.at("t", "t0").T
-        for time in VARIABLES:
-            forced = Phi.at("t", time) * B.at(time) * N.at(time) * B.at(time).T * Phi.at("t", time).T
-            name = "covariance integral" + ("" if time == "τ1" else f" over {time}")
-            d.assume(name, X, "=", free + Integral(forced, time), by=(LECTURE, "covariance integral"))
+        kernel = Phi.at("t", "τ") * B.at("τ")
+        forced, free = Integral(kernel * N.at("τ") * kernel.T, "τ"), Phi.at("t", "t0")
+        by = (LECTURE, "covariance integral")
+        d.assume("covariance integral", X, "=", free * X.at("t0") * free.T + forced, by=by)
+        for start in (two for one, two in apart if one == "t" and two != "t0"):
+            _since(d, start)
+
+
+def _since(d: Draft, start: str) -> None:
+    """Declare that the noise since an earlier time adds to the covariance."""
+    X, Phi = d.of("X", "Phi")
+    added = d.theory.matrix(f"noise since {start}", "n", "n", Glyph("Δ"), symmetric=True, constant=False)
+    moved = Phi.at("t", start) * X.at(start) * Phi.at("t", start).T
+    d.assume(f"X since {start}", X, "=", moved + added, by=(LECTURE, "covariance integral"))
+    d.assume(f"noise since {start} >= 0", added, "⪰", text="the integral of a congruence of the intensity")
 
 
 def _filter(d: Draft) -> None:

@@ -15,7 +15,7 @@ from derive.context import Theory
 from derive.functions import PI
 from derive.spectral import Conjugate
 from derive.terms import Delta, Dot, Expect, Glyph, Identity, Term, Zero, block
-from derive.theory.claims.base import Draft, Outline
+from derive.theory.claims.base import Draft, Outline, named_at
 
 KEY, LECTURE = "kalman-bucy", "kalman-bucy"
 SIGNALS = ("x", "xbar", "xtilde", "y", "ybar", "z", "ztilde", "e", "u", "w", "v")
@@ -161,13 +161,16 @@ def _steady(d: Draft, cross: bool) -> None:
 
 def _transient(d: Draft, cross: bool) -> None:
     A, C, W, V, N, P, K = d.of("A", "C", "W", "V", "N", "P(t)", "K(t)")
-    d.assume("P(0) > 0", P.at("t0"), "≻", text="the initial state is uncertain in every direction")
-    d.assume("P(t) > 0", P, "≻", text="the closed loop moves what was uncertain at first, and noise adds to it")
+    for time in dict.fromkeys((*d.times(), "t0")):
+        text = "what was uncertain at first is only moved by the closed loop, and noise adds to it"
+        d.assume("P(0) > 0" if time == "t0" else f"P({time}) > 0", P.at(time), "≻", text=text)
     right = rate(A, C, W, V, P, N if cross else None)
     by = ("observer", "Riccati equation") if cross else (LECTURE, "P(t)")
     d.define("P(t)", Dot(P), right, by=by)
-    best = (P * C.T + N if cross else P * C.T) * V.inv
-    d.assume("gain at t", K, "=", best, by=("observer", "gain") if cross else (LECTURE, "gain"), optimal=True)
+    by = ("observer", "gain") if cross else (LECTURE, "gain")
+    for time in d.times():
+        best = (P.at(time) * C.T + N if cross else P.at(time) * C.T) * V.inv
+        d.assume(f"gain at {time}", K.at(time), "=", best, by=by, optimal=True)
 
 
 def _dynamics(d: Draft) -> None:
@@ -177,18 +180,14 @@ def _dynamics(d: Draft) -> None:
     d.define("plant", Dot(x), A * x + w)
     d.define("filter", Dot(x_hat), A * x_hat + u)
     for time in d.times():
-        d.define(_at("output", time), y.at(time), C * x.at(time) + v.at(time))
-        d.define(_at("true output", time), z.at(time), C * x.at(time))
-        d.define(_at("output estimate", time), y_hat.at(time), C * x_hat.at(time))
-        d.define(_at("innovation", time), e.at(time), y.at(time) - y_hat.at(time))
-        d.define(_at("error", time), error.at(time), x.at(time) - x_hat.at(time))
-        d.define(_at("output error", time), gap.at(time), z.at(time) - y_hat.at(time))
-    d.define("correction", u, K * e, by=(LECTURE, "correction"))
+        d.define(named_at("output", time), y.at(time), C * x.at(time) + v.at(time))
+        d.define(named_at("true output", time), z.at(time), C * x.at(time))
+        d.define(named_at("output estimate", time), y_hat.at(time), C * x_hat.at(time))
+        d.define(named_at("innovation", time), e.at(time), y.at(time) - y_hat.at(time))
+        d.define(named_at("error", time), error.at(time), x.at(time) - x_hat.at(time))
+        d.define(named_at("output error", time), gap.at(time), z.at(time) - y_hat.at(time))
+        d.define(named_at("correction", time), u.at(time), K.at(time) * e.at(time), by=(LECTURE, "correction"))
     d.assume("error dynamics", Dot(error), "=", (A - K * C) * error + w - K * v, by=(LECTURE, "error dynamics"))
-
-
-def _at(name: str, time: str) -> str:
-    return name if time == "t" else f"{name} at {time}"
 
 
 def _moments(d: Draft, cross: bool) -> None:
@@ -204,7 +203,9 @@ def _moments(d: Draft, cross: bool) -> None:
             d.define(f"w and v {name}", Expect(w.at(one) * v.at(two).T), N * delta)
         elif not cross:
             d.assume(f"w and v {name}", Expect(w.at(one) * v.at(two).T), "=", Zero("m", "l"))
-    d.define("P(t) definition", Expect(error * error.T), P, by=(LECTURE, "attained"))
+    for time in d.times():
+        moment = Expect(error.at(time) * error.at(time).T)
+        d.define(f"P({time}) definition", moment, P.at(time), by=(LECTURE, "attained"))
 
 
 def _spectrum(d: Draft, cross: bool) -> None:

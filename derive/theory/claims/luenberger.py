@@ -12,6 +12,7 @@ from functools import cache
 from itertools import pairwise
 
 from derive.context import Theory
+from derive.errors import InputError
 from derive.terms import Expect, Glyph, Symbol, Term, Zero, block
 from derive.theory.claims.base import Draft, Outline, index_at
 from derive.theory.luenberger_formulas import (
@@ -164,7 +165,9 @@ def _transient(d: Draft, letter: str, numbers: dict[int, set[str]], noise: Noise
     first, last = min(numbers), max(numbers)
     needs_step = "L" in numbers[first] or (first == last and d.has("Q", "S"))
     signals = any(stem in SIGNALS for stems in numbers.values() for stem in stems)
-    if needs_step and (letter, first) not in (("k", -1), ("", 0)):
+    if "L" in numbers[first] and (letter, first) == ("", 0):
+        raise InputError("L_0: the first gain is L_1, which is made of P_0")
+    if needs_step and ("L" in numbers[first] or (letter, first) not in (("k", -1), ("", 0))):
         first -= 1
     indices = [index_at(letter, number) for number in range(first, last + 1)]
     for i, index in enumerate(indices):

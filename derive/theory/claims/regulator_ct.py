@@ -10,7 +10,7 @@ from functools import cache
 
 from derive.context import Theory
 from derive.terms import Dot, Glyph, Term, Zero
-from derive.theory.claims.base import Draft, Outline
+from derive.theory.claims.base import Draft, Outline, named_at
 from derive.theory.claims.regulator_dt import costs, matrices
 from derive.theory.regulator import cost_rate
 
@@ -47,12 +47,16 @@ def declare(d: Draft) -> None:
         d.stable("A - B K Hurwitz", "hurwitz", A - B * K)
     if d.has(*ON_THE_WAY):
         S, K = d.of(*ON_THE_WAY)
-        d.assume("S(t) >= 0", S, "⪰", text="a cost")
         d.define("cost to go", Dot(S), -cost_rate(A, B, S, Q, R))
-        d.define("gain at t", K, R.inv * B.T * S, optimal=True)
+        for time in d.times():
+            d.assume(f"S({time}) >= 0", S.at(time), "⪰", text="a cost")
+            d.define(f"gain at {time}", K.at(time), R.inv * B.T * S.at(time), optimal=True)
     if d.has("x", "u"):
         x, u = d.of("x", "u")
         d.define("plant", Dot(x), A * x + B * u)
         if d.has("K", "K(t)"):
-            gain = d.of("K(t)" if d.has("K(t)") else "K")[0]
-            d.assume("u = -K x", u, "=", -(gain * x), text="the optimal input", optimal=True)
+            varies = d.has("K(t)")
+            (gain,) = d.of("K(t)" if varies else "K")
+            for time in d.times():
+                right = -((gain.at(time) if varies else gain) * x.at(time))
+                d.assume(named_at("u = -K x", time), u.at(time), "=", right, text="the optimal input", optimal=True)
