@@ -99,6 +99,12 @@ class Proof:
             names |= {fact for product in sign.products for fact in product.facts} if sign else set()
         return (names | {t.relation for t in addends}) - SUPPOSED
 
+    def claims(self) -> list[Poly]:
+        """Return the polynomials that the certificates are about."""
+        signs = (self.sign, *((self.induction.start, self.induction.step) if self.induction else ()))
+        found = [part.claim for part in (*self.identities, *signs, self.comparison, self.uniqueness) if part]
+        return [*found, *(p for row in (self.positivity.claim if self.positivity else ()) for p in row)]
+
 
 @dataclass(frozen=True)
 class Step(Displayed):
@@ -187,6 +193,7 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     reading = in_force(step, reading, earlier)
     context, proof = reading.context, step.proof
     _check_variables(step, reading, earlier)
+    _check_indices(step, reading)
     parts = PARTS.get(step.rule, ("identities",))
     if any(getattr(proof, f.name) and f.name not in parts for f in fields(proof)):
         raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
@@ -249,6 +256,21 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
     for name in _behind(names, reading, earlier) if moving else ():
         if moving & reading.real.fixed.get(name, frozenset()):
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
+
+
+def _check_indices(step: Step, reading: Reading) -> None:
+    """Reject what is shown of no root from what holds for every root: a polynomial of degree 0 has none."""
+    context, claims = reading.context, step.proof.claims()
+    used = [context.relations[name] for name in step.proof.relations() & context.relations.keys()]
+    facts = [context.facts[name] for name in step.proof.relations() & context.facts.keys()]
+    used += [p for fact in facts for row in fact.matrix for p in row]
+    for index in {family.index for family in reading.real.families.values()} if claims else ():
+        if _carry(used, index, reading) and not _carry(claims, index, reading):
+            raise Rejected(f"there may be no root of which it holds: the claim has no index {index}")
+
+
+def _carry(polys: Sequence[Poly], index: str, reading: Reading) -> bool:
+    return any(reading.real.varies(s, index) for poly in polys for s in scalars_of(poly))
 
 
 def _made_of(statement: Equation, reading: Reading) -> set[str]:

@@ -109,7 +109,7 @@ def adopt_atom(reading: Reading, name: str, kind: str, of: Term, because: str) -
     relation, facts = atom_relation(atom, reading.real), atom_facts(atom)
     if kind == "times log" and relation is None and any(reading.real.varies(s, FREQUENCY) for s in scalars_of(atom.of)):
         raise MissingInverse(f"the logarithm in {name} is not declared yet")
-    if kind == "integral" and because and Fact("nonnegative", ((scalar(TIME),),)) in context.facts.values():
+    if kind == "integral" and because and _always(Fact("nonnegative", ((scalar(TIME),),)), reading):
         facts[f"{name} ≥ 0"] = Fact("nonnegative", ((scalar(name),),))
     reasons = {**reading.real.reasons, **({name: (because,)} if because else {})}
     real = replace(reading.real, atoms={**reading.real.atoms, name: atom}, reasons=reasons)
@@ -165,6 +165,12 @@ def check_sign(sign: Sign, claim: Poly, relation: str, reading: Reading) -> None
 def _s_is_real(reading: Reading) -> bool:
     """Tell whether the theory takes s to be real, and large."""
     return Fact("positive", ((scalar(COMPLEX),),)) in reading.context.facts.values()
+
+
+def _always(fact: Fact, reading: Reading) -> bool:
+    """Tell whether the theory declares a fact, and not for a case only."""
+    declared = reading.adopted - reading.real.cases
+    return any(name in declared and found == fact for name, found in reading.context.facts.items())
 
 
 def _check_real(sign: Sign, claim: Poly, relation: str, reading: Reading) -> None:

@@ -19,7 +19,7 @@ from derive.kernel import Certificate, Poly, Rejected
 from derive.kernel import Term as Addend
 from derive.real import HYPOTHESIS, NEGATION, Sign, SignProduct, constant, scalar
 from derive.rules import Positivity, Square
-from derive.spectral import At, Det, Modulus, Roots
+from derive.spectral import At, Det, Modulus, RealPart, Roots
 from derive.terms import Equation, Identity, Neg, Number, Product, Symbol, Term, Trace, Zero
 from tests.derive.scalar.test_false_statements import linked, same, sign
 from tests.derive.scalar.test_induction import counting, free, sequence
@@ -285,3 +285,41 @@ def test_the_limit_of_a_sum_in_a_case():
     t.assume("to 0", limit, "=", ZERO, case=True)
     accepted(t, replace(same(limit, ZERO), uses=("to 0",)))
     refused(t, same(limit, ZERO), match="not known")
+
+
+def test_an_integral_that_is_nonnegative_in_a_case():
+    """∫ c over (0, t) is negative for t < 0; that t ≥ 0 is a case, which no step names."""
+    for case in (False, True):
+        t, (time, tau, c) = theory("t", "τ", "c")
+        t.assume("t ≥ 0", time, "≥", case=case)
+        t.assume("c > 0", c, ">")
+        t.atom("integral", c, "c > 0", name="∫ c")
+        products = [SignProduct(UNIT, (fact,)) for fact in ("∫ c ≥ 0", NEGATION)]
+        step = sign(Equation(Definite(c, tau, ZERO, time), "≥", ZERO), scalar("∫ c"), products)
+        if case:
+            refused(t, step, match="no fact")
+        else:
+            accepted(t, step)
+
+
+# ------------------------------------------------------------------------------------------------ no roots at all
+def numbered(*conditions: tuple[str, str, int, int]) -> tuple[Theory, Symbol]:
+    """A number c and roots λ, of each of which relations a Re λ + b c are declared; there need not be any."""
+    t, (i, m, c) = theory("i", "m", "c")
+    re = RealPart(t.roots("λ", i, m))
+    for name, relation, a, b in conditions:
+        t.assume(name, number(a) * re + number(b) * c, relation, ZERO)
+    return t, c
+
+
+def test_a_number_from_what_is_said_of_roots_that_may_not_exist():
+    """A polynomial of degree 0 has no roots: what is said of each of them says nothing of c."""
+    t, c = numbered(("left", ">", -1, 1), ("right", ">", 1, 0))
+    facts = [SignProduct(UNIT, (fact,)) for fact in ("left", "right", NEGATION)]
+    refused(t, sign(Equation(c, ">", ZERO), scalar("c"), facts), match="no root")
+    t, c = numbered(("one", "=", 1, -1), ("two", "=", 1, -2))
+    refused(t, identity("c", c, ZERO, scalar("c"), use("one"), use("two", -1)), match="no root")
+    t, c = numbered(("left", "≥", -1, 1), ("right", "≥", 1, 0))
+    re = RealPart(t.symbols["λ"])
+    facts = [SignProduct(UNIT, (fact,)) for fact in ("left", NEGATION)]
+    accepted(t, sign(Equation(c, "≥", re), scalar("c") - scalar("Re λ"), facts))
