@@ -12,8 +12,10 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from derive.analysis import is_scalar
 from derive.declared import Declared, DeclaredAtom, DeclaredFact, DeclaredInverse, Item, names_of_roots, terms_of
-from derive.functions import Limit, Power, Start, behind, is_scalar, value
+from derive.entries import behind
+from derive.functions import Limit, Power, Start, value
 from derive.kernel import Poly, Rejected, identity
 from derive.real import COMPLEX, FREQUENCY, RESERVED, STEPS, TIME, UNIT, scalar, scalars_of
 from derive.roots import is_real

@@ -10,8 +10,8 @@ from functools import reduce
 from operator import mul
 from typing import Any
 
+from derive.analysis import is_scalar
 from derive.errors import InputError
-from derive.functions import is_scalar
 from derive.latex import latex
 from derive.spectral import (
     At,

@@ -1,17 +1,35 @@
-"""Terms of real analysis: roots, quotients, functions, limits and integrals, and how they are read as scalars.
+"""How terms about numbers are read: roots, quotients, functions, limits, integrals, and the frequency domain.
 
 A term prints as it was written; ``value`` gives its meaning, a polynomial in central scalars, with derivatives and
-limits evaluated by the rules of real.py. A root, a quotient or a logarithm is read only where the theory declares it,
-which it does with the reason why it is defined. Standard library only.
+limits evaluated by the rules of real.py. A root, a quotient or a logarithm is read only where the theory declares
+it, which it does with the reason why it is defined. Standard library only.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 from fractions import Fraction
 
-from derive.kernel import ANY, Poly, Rejected, identity, parts, times
+from derive.analysis import (
+    Abs,
+    Arctan,
+    Definite,
+    Exp,
+    Infinity,
+    Limit,
+    Log,
+    Max,
+    Power,
+    Quotient,
+    Rate,
+    Root,
+    Start,
+    point_of,
+    put,
+    replaced,
+)
+from derive.entries import entry_of, single_of, square_of, trace_of
+from derive.kernel import ANY, Poly, Rejected, identity
 from derive.real import (
     AXIS,
     CIRCLE,
@@ -21,7 +39,6 @@ from derive.real import (
     ONE,
     ORIGIN,
     ROUND,
-    SIGNS,
     STEPS,
     TIME,
     UNIT,
@@ -38,7 +55,6 @@ from derive.real import (
     reciprocal,
     reflect,
     scalar,
-    scalars_of,
 )
 from derive.spectral import (
     At,
@@ -55,144 +71,13 @@ from derive.spectral import (
     TimesLog,
     Total,
 )
-from derive.terms import (
-    Equation,
-    MissingInverse,
-    Neg,
-    Number,
-    Product,
-    Reading,
-    Sum,
-    Symbol,
-    Term,
-    Trace,
-    Zero,
-    lower,
-    walk,
-)
+from derive.terms import MissingInverse, Neg, Number, Product, Reading, Sum, Symbol, Term, Trace, Zero, walk
 
 PI = Symbol(CIRCLE, scalar=True)
 TURN = Product((Symbol(UNIT, scalar=True), Symbol(FREQUENCY, scalar=True)))  # jω
-
-
-@dataclass(frozen=True)
-class Root(Term):
-    """The square root, not negative."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Quotient(Term):
-    """A fraction."""
-
-    top: Term
-    bottom: Term
-
-
-@dataclass(frozen=True)
-class Power(Term):
-    """A power whose exponent is a natural number."""
-
-    body: Term
-    exponent: int
-
-
-@dataclass(frozen=True)
-class Abs(Term):
-    """The absolute value."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Max(Term):
-    """The larger of zero and a term."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Exp(Term):
-    """The exponential function."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Log(Term):
-    """The natural logarithm; that of a quotient is the difference of two."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Arctan(Term):
-    """The inverse of the tangent."""
-
-    body: Term
-
-
-@dataclass(frozen=True)
-class Infinity(Term):
-    """The point at infinity of a limit or an integral."""
-
-
-@dataclass(frozen=True)
-class Rate(Term):
-    """The derivative with respect to a variable."""
-
-    body: Term
-    symbol: Symbol
-
-
-@dataclass(frozen=True)
-class Start(Term):
-    """The value where a variable is 0."""
-
-    body: Term
-    symbol: Symbol
-
-
-@dataclass(frozen=True)
-class Limit(Term):
-    """The limit as a positive variable tends to a point: 0 (from above) or infinity."""
-
-    body: Term
-    symbol: Symbol
-    point: Term
-
-
-@dataclass(frozen=True)
-class Definite(Term):
-    """The integral over a variable between bounds: 0 and t, or 0 or minus infinity and infinity."""
-
-    body: Term
-    symbol: Symbol
-    lower: Term
-    upper: Term
-
-
-OF_MATRIX = (Det, Trace, Entry)  # numbers that a matrix has
 UNITY, BELOW = Number(Fraction(1)), Sum((Number(Fraction(1)), Power(TURN.factors[1], 2)))  # 1 and 1 + ω^2
 ANGLE = Exp(TURN)  # the point of the unit circle at the angle ω
 ON_CIRCLE = Quotient(Sum((UNITY, TURN)), Sum((UNITY, Neg(TURN))))  # the one at the angle 2 arctan ω
-
-
-def is_scalar(statement: Equation) -> bool:
-    """Tell whether a statement is about scalars only; the determinant and the trace of a matrix are."""
-    nodes = [n for side in (statement.lhs, statement.rhs) for n in _leaves(side)]
-    real = [n for n in nodes if isinstance(n, OF_MATRIX) or (isinstance(n, Symbol) and n.scalar)]
-    plain = all(n in real or isinstance(n, (Number, Infinity)) or n == Zero("", "") for n in nodes)
-    return plain and (bool(real) or statement.relation in SIGNS)
-
-
-def _leaves(term: Term) -> Iterator[Term]:
-    children = [] if isinstance(term, OF_MATRIX) else list(term.children())
-    if not children:
-        yield term
-    for child in children:
-        yield from _leaves(child)
 
 
 def value(term: Term, reading: Reading) -> Poly:
@@ -306,9 +191,9 @@ def _spectral(term: Term, reading: Reading) -> Poly:
                 raise MissingInverse(f"{atom.kind}: not declared, or its reason is not proved yet")
             return scalar(name)
         case Trace(body):
-            return _trace(body, reading)
+            return trace_of(body, reading)
         case Entry(body):
-            return _entry(body, reading)
+            return entry_of(single_of(body, reading), reading)
         case _:
             raise Rejected(f"{type(term).__name__} has no meaning as a scalar")
 
@@ -400,83 +285,11 @@ def _family(root: Symbol, reading: Reading) -> Family:
     return family
 
 
-def square_of(body: Term, reading: Reading) -> Poly:
-    """Read one square matrix, constant in time, of which a determinant or trace is taken."""
-    grid = lower(body, reading)
-    if len(grid) != 1 or len(grid[0]) != 1 or grid[0][0].rows != grid[0][0].cols:
-        raise Rejected("a determinant or trace is that of one square matrix")
-    if any(s[0] in "∫δ" for m, _ in grid[0][0].terms for s in m):
-        raise Rejected("no determinant or trace of an integral or of white noise is read")
-    if not _constant(grid[0][0], reading):
-        raise Rejected("no determinant or trace of a matrix that depends on time is read")
-    if hidden(grid[0][0], reading) - {COMPLEX}:
-        raise Rejected("no determinant or trace of a matrix that depends on a parameter other than s is read")
-    return grid[0][0]
-
-
-def behind(poly: Poly, reading: Reading) -> set[str]:
-    """Return the scalars on which a polynomial in matrices depends."""
-    return reading.real.reached(scalars_of(poly)) | hidden(poly, reading)
-
-
-def hidden(poly: Poly, reading: Reading) -> set[str]:
-    """Return the scalars on which letters depend: those in what they invert, and in what defines them."""
-    found, seen, waiting = set[str](), set[str](), {parts(a)[0] for _, w in poly.terms for a in w}
-    names = {letter: matrix for matrix, letter in reading.inverses.items()}
-    while waiting:
-        seen.add(letter := waiting.pop())
-        below = set(reading.real.letters.get(letter, ()))
-        if letter in names:
-            below |= scalars_of(names[letter]) | {parts(a)[0] for _, w in names[letter].terms for a in w}
-        found |= reading.real.reached(below & reading.context.alphabet.scalars)
-        waiting |= below - reading.context.alphabet.scalars - seen
-    return found
-
-
-def _constant(poly: Poly, reading: Reading) -> bool:
-    """Tell whether no letter depends on time, inverses by what they invert."""
-    names = {letter: matrix for matrix, letter in reading.inverses.items()}
-    letters = {parts(a)[0] for _, w in poly.terms for a in w}
-    return all(_constant(names[a], reading) if a in names else a in reading.context.constants for a in letters)
-
-
 def _find(atom: Atom, reading: Reading) -> str | None:
     found = reading.real.find(atom.kind, atom.of, atom.by, atom.over)
     if found is None and atom.kind == "det":
         return reading.real.find("det", reading.context.alphabet.transpose(atom.of), None, atom.over)
     return found
-
-
-def _trace(body: Term, reading: Reading) -> Poly:
-    """Read a trace as a sum of the traces of products, each of which is declared."""
-    return _traces(square_of(body, reading), reading)
-
-
-def _traces(poly: Poly, reading: Reading) -> Poly:
-    alphabet, result = reading.context.alphabet, ZERO
-    known = {tuple(alphabet.cyclic(a.of).items()): a.name for a in reading.real.atoms.values() if a.kind == "trace"}
-    for (m, w), c in poly.terms.items():
-        name = known.get(tuple(alphabet.cyclic(Poly({((), w): 1}, poly.rows, poly.cols)).items()))
-        if name is None:
-            raise MissingInverse("a trace that is not declared")
-        result = result + Poly({(times(m, (name,)), ()): c}, ANY, ANY)
-    return result
-
-
-def _entry(body: Term, reading: Reading) -> Poly:
-    """Read the entry of a matrix with one row and one column, which is its trace; that of the identity is 1."""
-    poly = single_of(body, reading)
-    rest = Poly({(m, w): c for (m, w), c in poly.terms.items() if w}, poly.rows, poly.cols)
-    ones = Poly({(m, ()): c for (m, w), c in poly.terms.items() if not w}, ANY, ANY)
-    return _traces(rest, reading) + ones
-
-
-def single_of(body: Term, reading: Reading) -> Poly:
-    """Read a matrix that is known to have one row and one column."""
-    poly = square_of(body, reading)
-    if not any(f.kind == "single" and f.matrix[0][0].rows == poly.rows for f in reading.context.facts.values()):
-        raise MissingInverse(f"the dimension {poly.rows} is not known to be 1")
-    return poly
 
 
 def total(poly: Poly, index: str, count: str, real: Real) -> Poly:
@@ -523,21 +336,6 @@ def over(term: Term, reading: Reading) -> Poly:
                 return multiply(value(bottom, reading), over(top, reading))
             case _:
                 raise
-
-
-def point_of(term: Term) -> str:
-    """Return the name of a point: 0, ∞ or -∞."""
-    match term:
-        case Infinity():
-            return INFINITY
-        case Neg(Infinity()):
-            return "-" + INFINITY
-        case Zero() | Number(Fraction(numerator=0)):
-            return ORIGIN
-        case Symbol(name="t"):
-            return "t"
-        case _:
-            raise Rejected("a limit or bound that is neither 0, t nor infinite")
 
 
 def _integral(term: Definite, reading: Reading) -> Poly:
@@ -587,23 +385,3 @@ def _check_bound(term: Definite, reading: Reading) -> None:
         others = {s.name for s in walk(term.body) if isinstance(s, Symbol) and s.name != name}
         if name in real.atoms or any(real.varies(s, v) for s in others for v in (name, TIME)):
             raise Rejected(f"the integrand depends on {TIME}, or through a symbol on {name}")
-
-
-def replaced(term: Term, old: Symbol, new: Term) -> Term:
-    """Replace a symbol in a term."""
-    return put(term, {old: new})
-
-
-def put(term: Term, images: Mapping[Term, Term]) -> Term:
-    """Put terms in the place of others; a symbol has nothing within."""
-    if term in images:
-        return images[term]
-
-    def within(part: object) -> object:
-        if isinstance(part, Term):
-            return put(part, images)
-        return tuple(map(within, part)) if isinstance(part, tuple) else part
-
-    if isinstance(term, Symbol):
-        return term
-    return replace(term, **{f.name: within(getattr(term, f.name)) for f in fields(term)})  # type: ignore[type-var]

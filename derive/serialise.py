@@ -17,7 +17,7 @@ from fractions import Fraction
 from functools import cache
 from typing import Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-from derive import derivation, functions, induction, kernel, real, rules, spectral, terms
+from derive import analysis, derivation, induction, kernel, real, rules, spectral, terms
 from derive.context import Theory
 from derive.derivation import Proof, Step
 from derive.errors import InputError
@@ -28,7 +28,7 @@ from derive.wellformed import CHECKS, LENGTH, a_dict, a_list, check_time, check_
 DEPTH = 64  # nesting of terms
 NODES: Mapping[str, type[Term]] = {
     cls.__name__: cls
-    for cls in (*vars(terms).values(), *vars(functions).values(), *vars(spectral).values())
+    for cls in (*vars(terms).values(), *vars(analysis).values(), *vars(spectral).values())
     if isinstance(cls, type) and issubclass(cls, Term) and cls != Term
 }
 SCHEMAS: Mapping[str, str] = {
@@ -226,7 +226,7 @@ class Reader:
 @cache
 def hints(cls: type) -> dict[str, Any]:
     """Return the resolved types of a dataclass's fields."""
-    modules = terms, functions, spectral, real, rules, induction, derivation, kernel
+    modules = terms, analysis, spectral, real, rules, induction, derivation, kernel
     names = {name: item for module in modules for name, item in vars(module).items()}
     return get_type_hints(cls, {**names, **vars(next(m for m in modules if m.__name__ == cls.__module__))})
 

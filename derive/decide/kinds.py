@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
+from derive.analysis import is_scalar
 from derive.decide.parts import is_trace
-from derive.functions import Definite, Limit, is_scalar
+from derive.functions import Definite, Limit
 from derive.interpret.statement import Statement
 from derive.spectral import Det, ImaginaryPart, RealPart, Total
 from derive.terms import (

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from derive.analysis import is_scalar
 from derive.context import DeclaredFact
 from derive.derivation import Proof, Rule, Step, Text
-from derive.functions import Limit, is_scalar, value
+from derive.functions import Limit, value
 from derive.kernel import Poly
 from derive.kernel import Term as Addend
 from derive.real import scalars_of

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import pytest
 
+from derive.analysis import is_scalar
 from derive.context import Theory
-from derive.functions import Definite, Infinity, Limit, Log, Power, Quotient, is_scalar, value
+from derive.functions import Definite, Infinity, Limit, Log, Power, Quotient, value
 from derive.kernel import Rejected
 from derive.real import Real, at_origin, constant, derivative, limit, multiply, power, reciprocal, reflect, scalar, show
 from derive.roots import CHECKS, check_positive, determinant_claim, is_real, real_coefficients
