@@ -156,6 +156,55 @@ def test_frames_that_show_something_else(change: dict[str, Any]):
         replay_numbers({**data, **change}, claim)
 
 
+KNOWN = {"rule": "known"}
+
+
+def letter(name: str, power: int = 1, sign: int = 1, **reason: Any) -> dict[str, Any]:
+    """Return a factor of a product."""
+    return {"factor": [["1", [name]]], "power": power, "sign": sign, "reason": reason or KNOWN}
+
+
+@pytest.mark.parametrize(
+    ("latex", "steps"),
+    [
+        (r"\sqrt{V^2 + 1} = V", [{"square": [["1", ["V"]]], "rest": [["1", []]]}]),
+        (r"\sqrt{-V} \ge 0", [{"square": [["1", []]], "rest": [["-1", ["V"]]]}, KNOWN]),
+        (r"0 \ge V P", [{"rule": "product", "number": "-1", "factors": [letter("P"), letter("V")]}]),
+        (r"0 \ge V P", [{"rule": "product", "number": "1", "factors": [letter("P"), letter("V")]}]),
+        (r"V P > 0", [{"rule": "product", "number": "1", "factors": [letter("P"), letter("V")]}]),
+        (r"A V \ge 0", [{"rule": "product", "number": "1", "factors": [letter("A"), letter("V")]}]),
+        (r"A^2 > 0", [{"rule": "product", "number": "1", "factors": [letter("A", 2)]}]),
+        (r"A^2 V > 0", [{"rule": "product", "number": "1", "factors": [{**letter("A", 2), "sign": 0}, letter("V")]}]),
+        (r"A \ge 0", [KNOWN]), (r"P > 0", [KNOWN]), (r"P \ne 0", [KNOWN]), (r"0 \ge P", [KNOWN]),
+        (r"P > 0", [{"rule": "apart", "factors": [letter("P")]}]),
+        (r"A > 0", [{"rule": "apart", "factors": [letter("A")]}]), (r"|A| = A", [{"turned": 1, **KNOWN}]),
+        (r"|A| = A", []), (r"\frac{1}{P} = \frac{1}{P}", []), (r"\frac{1}{P} = \frac{1}{P}", [KNOWN]), (r"P = 0", []),
+        (r"P = 0", [KNOWN, KNOWN]), (r"P = 0", [KNOWN, {**KNOWN, "rule": "product", "number": "0", "factors": []}]),
+    ],
+)  # fmt: skip
+def test_forged_proofs_of_false_claims(latex: str, steps: list[Any]):
+    claim = statement(KB, latex)
+    frame = decide_scalar(statement(KB, "P = P"), near=False).certificate
+    assert frame is not None
+    names = {"symbols": sorted({s.name for s in claim.symbols}), "relations": []}
+    with pytest.raises((Rejected, InputError)):
+        replay_numbers({**frame, **names, "proof": {"steps": steps}}, claim)
+
+
+def test_forged_cases_and_alternatives():
+    claim = statement(KB, r"|A| = A")
+    frame = decide_scalar(statement(KB, "P = P"), near=False).certificate
+    assert frame is not None
+    names = {"symbols": ["A"], "relations": []}
+    done, open_ = {"steps": []}, {"impossible": True}
+    above = {"case": [["1", ["A"]]], "above": done, "below": open_}
+    for proof in (above, {**above, "below": done}, {"alternatives": 0, "proofs": [done, done]}, open_):
+        with pytest.raises((Rejected, InputError)):
+            replay_numbers({**frame, **names, "proof": proof}, claim)
+    true = statement(KB, r"|A| \ge A")
+    replay_numbers({**frame, **names, "proof": {**above, "below": {"steps": [KNOWN]}}}, true)
+
+
 # ------------------------------------------------------------------------------------------------ mutants, by floats
 def plant(theory: str, rng: random.Random) -> dict[str, float]:
     """Return numbers for the letters of a theory, the covariance by bisection of its Riccati equation."""
