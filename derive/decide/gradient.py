@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from derive.context import Declared
-from derive.decide.workspace import Workspace, leave_out
+from derive.decide.ground import leave_out
+from derive.decide.workspace import Workspace
 from derive.derivation import DIRECTION
 from derive.kernel import Certificate, Poly, Rejected, parts, replay
 from derive.matrix.normal import reduced

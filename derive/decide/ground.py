@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from derive.context import Theory
+from derive.context import Theory, names_of
 from derive.derivation import DIRECTION
 from derive.kernel import Alphabet, Certificate, Letter, Poly, Rejected, Term, identity, parts, replay
 from derive.real import UNIT
@@ -68,8 +68,22 @@ def accept(items: Iterable[Item], reading: Reading, theory: Theory) -> Reading:
         if (item.name if isinstance(item, Lemma) else item.letter) in theory.declared:
             raise Rejected("a declaration of the theory has this name")
         reading = _with_lemma(item, reading) if isinstance(item, Lemma) else _with_inverse(item, reading)
-        reading = theory.settle(reading)
+        reading = without_cases(theory.settle(reading))
     return reading
+
+
+def without_cases(reading: Reading) -> Reading:
+    """Return a reading without its cases, which hold of instances only."""
+    context, cases = reading.context, reading.real.cases
+    relations = leave_out(cases, context.relations)
+    facts = {n: f for n, f in context.facts.items() if n not in cases}
+    return replace(reading, context=replace(context, relations=relations, facts=facts))
+
+
+def leave_out(names: Iterable[str], relations: Mapping[str, Poly]) -> dict[str, Poly]:
+    """Return the relations without those of some declarations."""
+    gone = {r for name in names for r in names_of(name, relations)}
+    return {n: p for n, p in relations.items() if n not in gone}
 
 
 def _with_lemma(item: Lemma, reading: Reading) -> Reading:

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from derive.claim import Counterexample
 from derive.context import Declared, DeclaredFact, DeclaredInverse
-from derive.decide.ground import Introduced, Item, Lemma
+from derive.decide.ground import Introduced, Item, Lemma, leave_out
 from derive.decide.parts import Part
-from derive.decide.workspace import Workspace, leave_out
+from derive.decide.workspace import Workspace
 from derive.kernel import Poly
 from derive.kernel import Term as Addend
 from derive.rules import Grid

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 from derive.claim import Answer, Counterexample, Verdict
 from derive.context import consulting
@@ -75,7 +76,14 @@ def _refute_where_defined(statement: Statement, seconds: float) -> Answer | None
 def _refuted(statement: Statement, number: int, found: Counterexample) -> Answer:
     """Return the answer when one of the relations fails."""
     notes = (f"its relation number {number + 1} fails",) if len(statement.equations) > 1 else ()
+    found = _readable(found)
     return Answer(Verdict.refuted, "exact instance", assumed=statement.assumed, counterexample=found, notes=notes)
+
+
+def _readable(found: Counterexample) -> Counterexample:
+    """Return a counterexample whose letters that vary with time are named as at the time t: P for P@t."""
+    values = {name.removesuffix("@t"): value for name, value in found.values.items()}
+    return replace(found, values=values, hidden=frozenset(name.removesuffix("@t") for name in found.hidden))
 
 
 def prove_statement(statement: Statement, seconds: float = 1.0) -> bool:
@@ -173,7 +181,7 @@ def _needed(statement: Statement, work: Workspace, names: Iterable[str]) -> dict
                 continue
             missing = without(work, name, left, left - difference[0][0], plain.relation, False)
             if missing:
-                found[name] = missing
+                found[name] = _readable(missing)
                 break
     return found
 
@@ -183,7 +191,7 @@ def _undefined(found: Undefined, statement: Statement) -> Answer:
         Verdict.refuted,
         "undefined",
         assumed=statement.assumed,
-        counterexample=found.counterexample,
+        counterexample=_readable(found.counterexample),
         notes=(f"the inverse of {_shown(found.body)} does not exist there",),
     )
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 from derive.claim import Counterexample
 from derive.context import names_of
-from derive.decide.ground import Introduced, Item, Lemma, accept, directions, suppose
+from derive.decide.ground import Introduced, Item, Lemma, accept, directions, leave_out, suppose, without_cases
 from derive.kernel import Certificate, Letter, Poly, Rejected, Term, identity, replay
 from derive.matrix.bearing import bearing
 from derive.matrix.hypotheses import Hypotheses
@@ -35,20 +35,11 @@ def proof_reading(theory: ClaimTheory, equations: Iterable[Equation] = ()) -> Re
 
     Gradients that occur in some equations have letters for their directions.
     """
-    reading = theory.reading
-    cases = reading.real.cases
+    reading = without_cases(theory.reading)
     context = reading.context
-    relations = leave_out(cases, context.relations)
-    facts = {n: f for n, f in context.facts.items() if n not in cases}
     along = {name: Letter(name, s.rows, s.cols) for name, s in directions(equations).items()}
     alphabet = replace(context.alphabet, letters={**along, **context.alphabet.letters})
-    return replace(reading, context=replace(context, alphabet=alphabet, relations=relations, facts=facts))
-
-
-def leave_out(names: Iterable[str], relations: Mapping[str, Poly]) -> dict[str, Poly]:
-    """Return the relations without those of some declarations."""
-    gone = {r for name in names for r in names_of(name, relations)}
-    return {n: p for n, p in relations.items() if n not in gone}
+    return replace(reading, context=replace(context, alphabet=alphabet))
 
 
 def conditions(theory: ClaimTheory) -> dict[str, Fact] | None:
