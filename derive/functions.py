@@ -1,7 +1,7 @@
 """How terms about numbers are read: roots, quotients, functions, limits, integrals, and the frequency domain.
 
 A term prints as it was written; ``value`` gives its meaning, a polynomial in central scalars, with derivatives and
-limits evaluated by the rules of real.py. A root, a quotient or a logarithm is read only where the theory declares
+limits evaluated by the rules of calculus.py. A root, a quotient or a logarithm is read only where the theory declares
 it, which it does with the reason why it is defined. Standard library only.
 """
 
@@ -28,6 +28,7 @@ from derive.analysis import (
     put,
     replaced,
 )
+from derive.calculus import at_origin, derivative, limit, reflect
 from derive.entries import entry_of, single_of, square_of, trace_of
 from derive.kernel import ANY, Poly, Rejected, identity
 from derive.real import (
@@ -46,14 +47,10 @@ from derive.real import (
     Atom,
     Family,
     Real,
-    at_origin,
     constant,
-    derivative,
-    limit,
     multiply,
     power,
     reciprocal,
-    reflect,
     scalar,
 )
 from derive.spectral import (

@@ -29,21 +29,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from derive.calculus import at_origin, substituted
 from derive.functions import Abs, Arctan, Exp, Log, Max, Power, Quotient, Root, over, value
 from derive.kernel import Certificate, Poly, Rejected, replay
-from derive.real import (
-    HYPOTHESIS,
-    ONE,
-    SIGNS,
-    STEPS,
-    Real,
-    Sign,
-    at_origin,
-    reciprocal,
-    scalar,
-    scalars_of,
-    substituted,
-)
+from derive.real import HYPOTHESIS, ONE, SIGNS, STEPS, Real, Sign, reciprocal, scalar, scalars_of
 from derive.rules import Fact
 from derive.scalars import check_sign
 from derive.terms import Equation, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero, walk

@@ -13,9 +13,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 
+from derive.calculus import reflect
 from derive.functions import Abs, Definite, Infinity, Limit, Log, Rate, point_of, replaced, value
 from derive.kernel import Poly, Rejected
-from derive.real import FREQUENCY, INFINITY, MATRIX, ONE, ORIGIN, ZERO, Real, reflect, scalar, scalars_of
+from derive.real import FREQUENCY, INFINITY, MATRIX, ONE, ORIGIN, ZERO, Real, scalar, scalars_of
 from derive.rules import Fact
 from derive.terms import Equation, Product, Reading, Sum, Symbol, Term, walk
 

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from fractions import Fraction
 
+from derive.calculus import reflect
 from derive.functions import (
     ON_CIRCLE,
     Definite,
@@ -33,7 +34,7 @@ from derive.functions import (
     value,
 )
 from derive.kernel import Poly, Rejected, identity, parts
-from derive.real import AXIS, COMPLEX, FREQUENCY, ONE, TIME, UNIT, ZERO, reflect, scalar, scalars_of
+from derive.real import AXIS, COMPLEX, FREQUENCY, ONE, TIME, UNIT, ZERO, scalar, scalars_of
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Product, Reading, Sum, Symbol, Term, Trace, Zero, lower, walk
 

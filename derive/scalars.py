@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from derive.calculus import at_origin, derivative
 from derive.functions import PI, Definite, Infinity, Limit, Log, Rate, point_of, spectral_atom, value, variable
 from derive.kernel import Poly, Rejected
 from derive.parameter import CHECKS as PARAMETER
@@ -24,10 +25,8 @@ from derive.real import (
     ZERO,
     Atom,
     Sign,
-    at_origin,
     atom_facts,
     atom_relation,
-    derivative,
     log_facts,
     needs,
     replay_sign,

@@ -10,6 +10,7 @@ from fractions import Fraction
 
 import pytest
 
+from derive.calculus import reflect
 from derive.context import Theory
 from derive.derivation import Proof, Step, check, verify
 from derive.functions import (
@@ -30,7 +31,7 @@ from derive.functions import (
     value,
 )
 from derive.kernel import Rejected
-from derive.real import ROUND, reflect, scalar
+from derive.real import ROUND, scalar
 from derive.roots import check_instance, check_mirrored, check_modulus, check_same_roots
 from derive.spectral import At, Conjugate, Det, Distance, Growth, ImaginaryPart, Modulus, RealPart, Roots, Total
 from derive.terms import Equation, Identity, Neg, Number, Product, Reading, Sum, Symbol, Term, Zero

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import pytest
 
 from derive.analysis import is_scalar
+from derive.calculus import at_origin, derivative, limit, reflect
 from derive.context import Theory
 from derive.functions import Definite, Infinity, Limit, Log, Power, Quotient, value
 from derive.kernel import Rejected
-from derive.real import Real, at_origin, constant, derivative, limit, multiply, power, reciprocal, reflect, scalar, show
+from derive.real import Real, constant, multiply, power, reciprocal, scalar, show
 from derive.roots import CHECKS, check_positive, determinant_claim, is_real, real_coefficients
 from derive.spectral import At, Det, Entry, ImaginaryPart, Modulus, RealPart, Roots, TimesArctan, TimesLog, Total
 from derive.terms import Block, Equation, Identity, Neg, Number, Product, Reading, Sum, Symbol, Term, Trace, Zero
