@@ -28,7 +28,9 @@ TOKEN = re.compile(
 )
 MATH_END = re.compile(r"(?:[^\\$]++|\\.|\$(?!\$))*+(?P<end>\$\$)", re.DOTALL)
 INLINE_END = re.compile(r"(?:[^\\$\n`]++|\\.|\n(?![ \t]*\n))*+(?P<end>\$)|`[^`\n]++`(?P<github>\$)", re.DOTALL)
-GOES_ON = re.compile(r"[ \t]*\n(?:[ \t>]*\n)?[ \t>]*\$\$(?=\s*(?:[-=+−<>]|\\(?:leq?|geq?|preceq|succeq|equiv)(?![A-Za-z])))")
+GOES_ON = re.compile(
+    r"[ \t]*\n(?:[ \t>]*\n)?[ \t>]*\$\$(?=\s*(?:[-=+−<>]|\\(?:leq?|geq?|preceq|succeq|equiv)(?![A-Za-z])))"
+)
 BRACKET_END = re.compile(r"\\\]")
 BLANK_LINE = re.compile(r"\n[ \t]*\n")
 OPTIONS = re.compile(
