@@ -19,6 +19,7 @@ from derive.latex.vocabulary import (
     DROPPED,
     DROPPED_WITH_ARGUMENT,
     LETTERS,
+    POSITIONED,
     RAW,
     RELATIONS,
     SIZES,
@@ -96,7 +97,8 @@ PATTERN = re.compile(
     re.DOTALL,
 )
 GAP = re.compile(r"\s*")
-OPTION = re.compile(r"\s*\[[a-zA-Z]\]|\[-?[0-9.]+ ?[a-z]{2}\]|\*")
+POSITION = re.compile(r"\s*\[[tbc]\]")  # of aligned and array on their line
+DISTANCE = re.compile(r"\*?(?:\[-?[0-9.]+ ?(?:pt|em|ex|mm|cm|in|mu|bp|pc|sp)\])?")  # to the next row
 INVISIBLE = frozenset("\u200b\u2060\u2061\u2062\u2063\u2064\ufeff")
 
 
@@ -150,8 +152,8 @@ def _escape(source: str, sign: str, start: int, end: int) -> tuple[list[Token], 
     if sign == "|":
         return [Token("delimiter", "‖", start, end)], end
     if sign == "\\":
-        option = OPTION.match(source, end)
-        return [Token("break", "\\\\", start, end)], option.end() if option else end
+        distance = DISTANCE.match(source, end)
+        return [Token("break", "\\\\", start, end)], distance.end() if distance else end
     if sign in "[]()":
         return [Token("sign", "$", start, end)], end
     raise Unreadable(start, "a formula", "a backslash before a sign that is no command")
@@ -190,8 +192,8 @@ def _environment(source: str, command: str, start: int, end: int) -> tuple[list[
     text, end = _argument(source, end)
     name, columns = text.strip().rstrip("*"), ""
     if command == "begin":
-        option = OPTION.match(source, end)
-        end = option.end() if option else end
+        position = POSITION.match(source, end) if name in POSITIONED else None
+        end = position.end() if position else end
         if name in ("array", "alignat", "alignedat"):
             columns, end = _argument(source, end)
     return [Token("begin" if command == "begin" else "finish", name, start, end, columns)], end

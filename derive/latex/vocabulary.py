@@ -97,6 +97,7 @@ LAYOUTS = _words(
     "equation align aligned alignat alignedat split gather gathered multline multlined eqnarray flalign displaymath "
     "math dmath subequations"
 )
+POSITIONED = frozenset(("aligned", "alignedat", "gathered", "multlined", "array"))
 COLUMNED = frozenset(("align", "aligned", "alignat", "alignedat", "flalign"))
 MATRICES = {"bmatrix": "[", "pmatrix": "(", "matrix": "", "Bmatrix": "{", "vmatrix": "|", "Vmatrix": "‖",
             "smallmatrix": "", "array": "", "bsmallmatrix": "[", "psmallmatrix": "("}  # fmt: skip

@@ -209,6 +209,9 @@ SPELLED = {
     r"p(x|y) = \delta(x)": r"p(x \mid y) = \delta(x)",
     r"\rho(A - L C) < 1": r"\rho(A - L C) < 1",
     r"\int_0^t dt": r"\int_{0}^{t} 1 \, d t",
+    r"\begin{bmatrix} [c] A \\ [b] B \end{bmatrix}": r"\begin{bmatrix} [c] A \\ [b] B \end{bmatrix}",
+    r"\begin{aligned}[t] a &= b \\[2pt] c &= d \\*[-1.5ex] e &= f \end{aligned}": r"a = b ;\quad c = d ;\quad e = f",
+    r"\begin{array}[c]{rl} a &= b \\ [c] d &= f \end{array}": r"a = b ;\quad [c] d = f",
     r"a = b: c = d": r"a = b ;\quad c = d",
     r"\underset{L}{\min} J(L_1, L_2)": r"\min_{L} J(L_{1}, L_{2})",
 }
