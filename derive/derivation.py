@@ -193,7 +193,7 @@ def check(step: Step, reading: Reading, earlier: dict[str, Step]) -> None:
     reading = in_force(step, reading, earlier)
     context, proof = reading.context, step.proof
     _check_variables(step, reading, earlier)
-    _check_indices(step, reading)
+    _check_indices(step, reading, earlier)
     parts = PARTS.get(step.rule, ("identities",))
     if any(getattr(proof, f.name) and f.name not in parts for f in fields(proof)):
         raise Rejected(f"a proof by the rule {step.rule!r} has {' and '.join(parts)} and nothing else")
@@ -258,19 +258,40 @@ def _check_variables(step: Step, reading: Reading, earlier: Mapping[str, Step]) 
             raise Rejected(f"it rests on {name}, which holds {' and '.join(moving)} at some value")
 
 
-def _check_indices(step: Step, reading: Reading) -> None:
+def _check_indices(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> None:
     """Reject what is shown of no root from what holds for every root: a polynomial of degree 0 has none."""
+    if not reading.real.families:
+        return
     context, claims = reading.context, step.proof.claims()
-    used = [context.relations[name] for name in step.proof.relations() & context.relations.keys()]
-    facts = [context.facts[name] for name in step.proof.relations() & context.facts.keys()]
+    named = step.proof.relations() - {*step.proof.links}
+    used = [context.relations[name] for name in named & context.relations.keys()]
+    facts = [context.facts[name] for name in named & context.facts.keys()]
     used += [p for fact in facts for row in fact.matrix for p in row]
-    for index in {family.index for family in reading.real.families.values()} if claims else ():
+    if step.rule not in (*FUNCTIONS, "sum over"):
+        used += [p for name in step.proof.links if name in earlier for p in _sides_of(earlier[name], reading)]
+        claims = claims or _sides_of(step, reading)
+    for index in {family.index for family in reading.real.families.values()}:
         if _carry(used, index, reading) and not _carry(claims, index, reading):
             raise Rejected(f"there may be no root of which it holds: the claim has no index {index}")
 
 
 def _carry(polys: Sequence[Poly], index: str, reading: Reading) -> bool:
     return any(reading.real.varies(s, index) for poly in polys for s in scalars_of(poly))
+
+
+def _sides_of(step: Step, reading: Reading) -> list[Poly]:
+    """Return the difference of the sides, and what is in a limit, integral or derivative, as far as they are read."""
+    found: list[Poly] = []
+    lhs, rhs = step.statement.lhs, step.statement.rhs
+    for side in (s for s in (lhs, rhs) if isinstance(s, (Limit, Definite, Rate, Start))):
+        for term in (side.body, lhs, rhs):
+            with suppress(Rejected):
+                found.append(value(term, reading))
+    with suppress(Rejected):
+        found += [] if found else [value(lhs, reading) - value(rhs, reading)]
+    with suppress(Rejected):
+        found += [] if found else [poly for row in order_claim(step.statement, reading) for poly in row]
+    return found
 
 
 def _made_of(statement: Equation, reading: Reading) -> set[str]:

@@ -323,3 +323,38 @@ def test_a_number_from_what_is_said_of_roots_that_may_not_exist():
     re = RealPart(t.symbols["λ"])
     facts = [SignProduct(UNIT, (fact,)) for fact in ("left", NEGATION)]
     accepted(t, sign(Equation(c, "≥", re), scalar("c") - scalar("Re λ"), facts))
+
+
+def test_a_chain_through_a_root_that_may_not_exist():
+    """c = Re λ and Re λ = 0 for each root, of which there are none."""
+    t, c = numbered(("one", "=", 1, -1), ("two", "=", 1, 0))
+    re = RealPart(t.symbols["λ"])
+    first = identity("first", c, re, scalar("c") - scalar("Re λ"), use("one", -1))
+    then = identity("then", re, NONE, scalar("Re λ"), use("two"))
+    accepted(t, first, then)
+    refused(t, first, then, linked(Equation(c, "=", NONE), "chain", "first", "then", name="c"), match="no root")
+
+
+def test_a_limit_between_bounds_for_each_root():
+    """1 - c and c - 1 are at least (Re λ)^2 for each root: without roots c is any number."""
+    t, c = numbered()
+    z, re = t.scalar("z"), RealPart(t.symbols["λ"])
+    t.assume("z > 0", z, ">")
+    t.atom("reciprocal", z, "z > 0", "1/z")
+    t.assume("above", ONE - c - re * re, "≥", ZERO)
+    t.assume("below", c - ONE - re * re, "≥", ZERO)
+    bound, steps = re * re * Quotient(ONE, z), list[Step]()
+    square = scalar("Re λ") * scalar("Re λ")
+    over = SignProduct(UNIT, ("z > 0",), (scalar("1/z") * scalar("Re λ"),))
+    for name, gap, poly in (
+        ("above", c - ONE, scalar("c") - constant(1)),
+        ("below", ONE - c, constant(1) - scalar("c")),
+    ):
+        products = [over, SignProduct(UNIT, (name,)), SignProduct(UNIT, (), (scalar("Re λ"),))]
+        products.append(SignProduct(UNIT, (NEGATION,)))
+        terms = [use("1/z", 1, "1/z", "Re λ", "Re λ")]
+        claim = square * scalar("1/z") - poly
+        steps.append(sign(Equation(bound, "≥", gap), claim, products, terms, name=f"bound {name}"))
+    accepted(t, *steps)
+    last = linked(Equation(Limit(c, z, Infinity()), "=", ONE), "squeeze", "bound above", "bound below", name="limit")
+    refused(t, *steps, last, match="no root")
