@@ -16,7 +16,7 @@ from typing import Any
 from derive.claim import Claim
 from derive.decide.ground import Introduced, Item, Lemma, accept, symbols
 from derive.decide.hypotheses import addends_in, addends_of
-from derive.decide.parts import Part, replay_part
+from derive.decide.parts import Part, bound, replay_part
 from derive.decide.traces import TraceOrder, TraceProduct
 from derive.decide.workspace import proof_reading
 from derive.derivation import Proof
@@ -28,7 +28,7 @@ from derive.kernel import parts as letter_parts
 from derive.rules import Grid
 from derive.serialise import SCHEMAS, Reader, certificates, letters, to_json
 from derive.terms import Equation, Reading, Symbol, walk
-from derive.wellformed import a_dict, a_list, shown
+from derive.wellformed import EXPANSION, a_dict, a_list, shown
 
 __all__ = ["SCHEMA", "certificate", "replay_claim", "replayed", "signed"]
 
@@ -140,6 +140,8 @@ def replay_claim(data: Any) -> None:
     if missing:
         raise InputError(f"certificate: expected the keys {', '.join(FIRST)}, got none of the name {missing[0]}")
     statement, claim = _statement(item)
+    for equation in statement.equations:
+        bound(equation, statement.theory)
     theory = statement.theory.theory
     items: list[Item] = []
     for step in a_list(item["steps"], "steps"):
@@ -206,23 +208,19 @@ def _read_item(data: Any, reader: Reader) -> Item:
     item = a_dict(data, "steps")
     if "fact" in item:
         a_dict(data, "steps", ("fact", "kind", "matrix", "relations", "certificate"))
-        name, part = reader.certificate(item["certificate"])
-        if name not in ("positivity", "comparison"):
-            raise InputError(f"certificate: expected one of positivity, got {name}")
-        return Lemma(
-            _text(item["fact"]), _text(item["kind"]), reader.read(Grid, item["matrix"], "matrix"), **{name: part}
-        )
+        proof = reader.proof([item["certificate"]])
+        if (proof.positivity is None) == (proof.comparison is None):
+            raise InputError("certificate: expected one of positivity or comparison, got another")
+        matrix = reader.read(Grid, item["matrix"], "matrix")
+        return Lemma(_text(item["fact"]), _text(item["kind"]), matrix, proof.positivity, proof.comparison)
     a_dict(data, "steps", ("inverse", "of", "relations", "because", "generic", "by", "right", "left"))
-    read = reader.read
-    return Introduced(
-        _text(item["inverse"]),
-        read(Poly, item["of"], "of"),
-        _text(item["because"]),
-        None if item["by"] is None else read(Poly, item["by"], "by"),
-        _addends(item["right"], reader),
-        _addends(item["left"], reader),
-        _text(item["generic"]),
-    )
+    of, by = reader.read(Poly, item["of"], "of"), item["by"]
+    explicit = None if by is None else reader.read(Poly, by, "by")
+    if explicit is not None and len(of.terms) * len(explicit.terms) > EXPANSION:
+        raise InputError(f"by: expected a formula that expands to at most {EXPANSION} products, got more")
+    right, left = _addends(item["right"], reader), _addends(item["left"], reader)
+    because, generic = _text(item["because"]), _text(item["generic"])
+    return Introduced(_text(item["inverse"]), of, because, explicit, right, left, generic)
 
 
 def _read_parts(item: Mapping[str, Any], reader: Reader) -> list[Part]:

@@ -16,7 +16,7 @@ from derive.decide.certificate import certificate, replayed
 from derive.decide.equations import polynomials, prove_equation, refute_equation
 from derive.decide.hypotheses import free_gains, inverses_in, names_in, not_needed, pruned, used, without
 from derive.decide.obligations import Undefined, Unjustified, justify, justify_given
-from derive.decide.parts import Part, oriented, rule_of
+from derive.decide.parts import Part, bound, oriented, rule_of
 from derive.decide.vacuity import contradictory, satisfiable
 from derive.decide.workspace import Workspace
 from derive.derivation import order_claim
@@ -34,6 +34,8 @@ def decide_matrix(statement: Statement, seconds: float = 10.0, explain: bool = F
     """Decide a statement between matrices or traces."""
     work = Workspace(statement.theory, time.monotonic() + seconds, statement.equations)
     try:
+        for equation in statement.equations:
+            bound(equation, statement.theory)
         justify_given(work)
         for equation in statement.equations:
             for side in (equation.lhs, equation.rhs):

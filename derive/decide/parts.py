@@ -10,10 +10,25 @@ from derive.decide.signals import check_expectation, has_expectation
 from derive.decide.traces import TraceOrder, check_trace_order
 from derive.derivation import Proof, Step, check
 from derive.kernel import Poly, Rejected
-from derive.terms import Equation, Gradient, Neg, Number, Product, Reading, Sum, Term, Trace, Zero, lower, lower_trace
+from derive.terms import (
+    Equation,
+    Gradient,
+    Inverse,
+    Neg,
+    Number,
+    Product,
+    Reading,
+    Sum,
+    Term,
+    Trace,
+    Zero,
+    lower_trace,
+    walk,
+)
 from derive.theory.claims.base import ClaimTheory
+from derive.wellformed import expansion
 
-__all__ = ["Part", "Rule", "is_trace", "oriented", "replay_part", "rule_of"]
+__all__ = ["Part", "Rule", "bound", "is_trace", "oriented", "replay_part", "rule_of"]
 
 Rule = Literal["identity", "trace", "gradient", "positivity", "comparison", "trace order", "expectation"]
 
@@ -105,7 +120,12 @@ def rule_of(equation: Equation) -> Rule:
     return "trace" if is_trace(equation.lhs) else "identity"
 
 
-def shape(equation: Equation, reading: Reading) -> tuple[int, int]:
-    """Return the number of block rows and columns of an equation between matrices."""
-    grid = lower(equation.lhs, reading)
-    return len(grid), len(grid[0])
+def bound(equation: Equation, theory: ClaimTheory) -> None:
+    """Bound the number of products that an equation expands to, inside its inverses too.
+
+    Raises:
+        InputError: more than one statement may have.
+    """
+    for side in (equation.lhs, equation.rhs):
+        for term in (side, *(n.body for n in walk(side) if isinstance(n, Inverse))):
+            expansion(term, theory.theory)

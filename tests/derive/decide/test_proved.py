@@ -116,3 +116,11 @@ def test_counterexamples_are_confirmed_by_code_of_their_own():
     P, Q = (Poly({((), (x,)): 1}, "n", "n") for x in "PQ")
     assert confirm(found, P, Q, work.problem())
     assert not confirm(found, P, P, work.problem())
+
+
+@pytest.mark.parametrize("body", ["(P + Q + A + A^T)", "(P^{-1} + C^T R^{-1} C)", "(I + (P + Q + A + A^T))"])
+def test_what_expands_to_too_much_is_refused(body):
+    with pytest.raises(InputError, match="at most"):
+        answer(f"P = {body * 12}", assume=(r"P \succ 0",))
+    with pytest.raises(InputError, match="at most"):
+        answer(f"P = ({body * 12})^{{-1}}", assume=(r"P \succ 0",))
