@@ -38,7 +38,7 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
     if statement.scalar:
         from derive.scalar.decision import decide_scalar
 
-        return decide_scalar(statement, seconds=seconds)
+        return decide_scalar(statement, seconds=seconds, explain=explain, near=near)
     if is_matrix_claim(statement):
         from derive.decide.matrix import decide_matrix
 
