@@ -41,7 +41,7 @@ def judge(item: Item, seconds: float = 10.0, decide: Decide | None = None) -> Re
 def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
     from derive.interpret import Misfit, echo, shapes
 
-    claim = item.claim
+    claim, display = item.claim, None
     try:
         display = read_item(item, claim.latex)
         if not (item.explicit or relates(display)):
@@ -52,11 +52,25 @@ def _judge(item: Item, seconds: float, decide: Decide | None) -> Result | None:
         read_as, found_shapes = echo(statement), shapes(statement)
         answer = _decided(statement, seconds, decide, explain=not claim.file)
     except Misfit as error:
-        return Result(claim, "refuted", Answer(Verdict.refuted, "types", notes=(str(error),)))
+        return Result(claim, "refuted", _misfit(item, display, str(error)))
     except InputError as error:
         return _error(claim, error)
     answer = replace(answer, certificate=_signed(answer, item, statement))
     return Result(claim, str(answer.verdict), answer, read_as, found_shapes)
+
+
+def _misfit(item: Item, display: Display | None, message: str) -> Answer:
+    """Return the answer on a formula whose shapes do not fit, with the nearest true one."""
+    from derive.decide.misfit import nearest_fitting
+    from derive.theory.claims import claim_theory
+
+    found = None
+    if display is not None and not item.claim.scalar:
+        setting = item.setting
+        theory, given = claim_theory(item.claim.theory), read_assumed(setting)
+        found = nearest_fitting(display, theory, assume=given, notation=setting.notation)
+    nearest, why = found or (None, "")
+    return Answer(Verdict.refuted, "types", nearest=nearest, notes=tuple(filter(None, (message, why))))
 
 
 def unreadable(item: Item) -> Result | None:
