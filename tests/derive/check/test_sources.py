@@ -76,8 +76,8 @@ def test_the_missing_letter_of_the_printed_gains_is_found():
 
 def test_their_certificates_are_replayed(tmp_path):
     for path in SOURCES:
-        proved = [r for r in report(path).results if r.verdict == "proved"]
-        kept = tuple(r for r in proved if r.claim.id not in SHIFTED)
+        proved = [r for r in report(path).results if r.verdict == "proved" and r.claim.id not in SHIFTED]
+        kept = tuple(r for r in proved if r.answer.method == "kernel")
         written = write_certificates(Report(kept), tmp_path / path.stem)
         assert len(written) == len(kept) > 0
         assert all(found.accepted for file in written for found in verify_file(file))
