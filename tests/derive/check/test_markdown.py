@@ -79,7 +79,8 @@ def test_what_is_no_formula_is_passed_over(text):
 
 
 def test_inline_formulas_and_money():
-    assert inline("Let $V = I$ cost $5 and $10, or $5-$6, \\$3, `$x$`, $`R = 1`$, and $a$-$b$.") == ["V = I", "R = 1", "a", "b"]
+    text = "Let $V = I$ cost $5 and $10, or $5-$6, \\$3, `$x$`, $`R = 1`$, and $a$-$b$."
+    assert inline(text) == ["V = I", "R = 1", "a", "b"]
 
 
 def test_several_formulas_of_a_directive_are_told_apart():
