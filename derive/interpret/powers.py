@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -22,8 +23,27 @@ COMPLEX = frozenset({"s", "j", "z"})
 BITS = 10_000  # of a number, written out
 
 
+def beside(node: s.Raised | s.Inverted | s.Transposed, reader: Reader) -> Typed | None:
+    """Read a script behind a letter and brackets as one of the brackets if they are two factors: P (s - 1)^{-1}."""
+    core: s.Node = node
+    while isinstance(core, (s.Raised, s.Inverted, s.Transposed)):
+        core = core.body
+    if not isinstance(core, s.Applied) or not reader.multiplies(core):
+        return None
+    return reader.read(s.Times((core.head, _rescripted(node, s.Fenced(core.arguments[0])))))
+
+
+def _rescripted(node: s.Node, body: s.Node) -> s.Node:
+    """Return the scripts of a node around another body."""
+    if not isinstance(node, (s.Raised, s.Inverted, s.Transposed)):
+        return body
+    return replace(node, body=_rescripted(node.body, body))
+
+
 def raised(node: s.Raised, reader: Reader) -> Typed:
     """Read a power: natural and negative numbers, halves, and e to a number."""
+    if (product := beside(node, reader)) is not None:
+        return product
     if isinstance(node.body, s.Name):
         named = reader.named(s.Name(node.body.letter, node.body.accents, node.body.sub, exponent_text(node.exponent)))
         if named is not None:
@@ -101,7 +121,7 @@ def inverse(typed: Typed, reader: Reader) -> Typed:
 
 def inverted(node: s.Inverted, reader: Reader) -> Typed:
     """Read an inverse."""
-    return inverse(reader.read(node.body), reader)
+    return beside(node, reader) or inverse(reader.read(node.body), reader)
 
 
 def radical(node: s.Radical, reader: Reader) -> Typed:
@@ -114,7 +134,7 @@ def radical(node: s.Radical, reader: Reader) -> Typed:
 # ------------------------------------------------------------------------------------------------ transposes
 def transposed(node: s.Transposed, reader: Reader) -> Typed:
     """Read a transpose; with a star it is the conjugate transpose where jω occurs."""
-    return transpose(reader.read(node.body), node.mark, reader)
+    return beside(node, reader) or transpose(reader.read(node.body), node.mark, reader)
 
 
 def transpose(typed: Typed, mark: str, reader: Reader) -> Typed:

@@ -151,6 +151,8 @@ class Reader:
     def applied(self, node: s.Applied) -> Typed:
         """Read a letter at times, indices or frequencies."""
         head = node.head
+        if not isinstance(head, s.Name) and self.multiplies(node):
+            return arithmetic.times(s.Times((head, s.Fenced(node.arguments[0]))), self)
         if isinstance(head, s.Transposed):
             return powers.transpose(self.applied(s.Applied(head.body, node.arguments)), head.mark, self)
         if isinstance(head, s.Inverted):
@@ -169,6 +171,15 @@ class Reader:
         for _ in range(derivatives(head)):
             term = Dot(term)
         return term, shape
+
+    def multiplies(self, node: s.Applied) -> bool:
+        """Return whether what looks like an application is a product, as its letter is no function in the theory."""
+        head = node.head
+        while isinstance(head, (s.Transposed, s.Inverted, s.Raised)):
+            head = head.body
+        if not isinstance(head, s.Name) or len(node.arguments) != 1 or time_of(node.arguments[0]) is not None:
+            return False
+        return self._applied_name(head, spell(head, self.notation), node.arguments) is None
 
     def _applied_name(self, head: s.Name, spelled: str, arguments: tuple[s.Node, ...]) -> Typed | None:
         if spelled == "delta" and len(arguments) == 1:
