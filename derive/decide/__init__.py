@@ -29,6 +29,16 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
     Raises:
         InputError: assumptions that contradict the theory.
     """
+    from derive.decide.kinds import holds_along
+
+    answer = _decided(statement, seconds, explain, near)
+    if answer.verdict is Verdict.refuted and holds_along(statement):
+        note = "what is assumed holds at every time, so that values at one instant refute nothing"
+        return Answer(Verdict.undecided, assumed=statement.assumed, notes=(note,))
+    return answer
+
+
+def _decided(statement: Statement, seconds: float, explain: bool, near: bool) -> Answer:
     from derive.decide.kinds import is_analytic, is_matrix_claim
 
     if is_analytic(statement):

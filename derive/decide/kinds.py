@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from derive.analysis import is_scalar
+from derive.context import Declared
 from derive.decide.parts import is_trace
 from derive.functions import Definite, Limit
 from derive.interpret.statement import Statement
@@ -32,7 +33,7 @@ from derive.terms import (
     walk,
 )
 
-__all__ = ["is_analytic", "is_matrix_claim"]
+__all__ = ["holds_along", "is_analytic", "is_matrix_claim"]
 
 MATRIX: tuple[type[Term], ...] = (
     Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace,
@@ -46,6 +47,26 @@ def is_analytic(statement: Statement) -> bool:
     """Tell whether a statement has integrals over frequency, limits, determinants or eigenvalues."""
     nodes = (n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side))
     return any(isinstance(n, ANALYTIC) or (isinstance(n, Symbol) and n.name[:5] in EXTREMES) for n in nodes)
+
+
+def holds_along(statement: Statement) -> bool:
+    """Tell whether a claim has a rate, and an assumed equation ties what has a rate: P(t) = P says it at every time.
+
+    Values at one instant may satisfy it by chance there, so that they refute nothing.
+    """
+    theory = statement.theory.theory
+    items = [d.statement for d in theory.declared.values() if isinstance(d, Declared)]
+    rates = {e.lhs.body for e in items if isinstance(e.lhs, Dot)}
+    given = [theory.declared[name] for name in statement.assumed if name in theory.declared]
+    tied = [*statement.theory.conditions, *(d.statement for d in given if isinstance(d, Declared))]
+    claimed = (n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side))
+    return any(isinstance(n, Dot) for n in claimed) and any(
+        isinstance(n, Symbol) and n in rates and n.name not in theory.random | theory.uncentred
+        for e in tied
+        if e.relation in ("=", ":=") and not isinstance(e.lhs, Dot)
+        for side in (e.lhs, e.rhs)
+        for n in walk(side)
+    )
 
 
 def is_matrix_claim(statement: Statement) -> bool:

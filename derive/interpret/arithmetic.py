@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from derive.functions import Infinity, Quotient
 from derive.interpret.shapes import NotUnderstood, Shape, Typed, misfit
+from derive.interpret.times import time_of
 from derive.latex import latex
 from derive.latex import syntax as s
 from derive.terms import Identity, Inverse, Neg, Number, Product, Sum, Term, Trace, Zero
@@ -84,7 +86,17 @@ def adapted(typed: Typed, shape: Shape, reader: Reader) -> Term:
 
 # ------------------------------------------------------------------------------------------------ products
 def times(node: s.Times, reader: Reader) -> Typed:
-    """Read a product in order; numbers stand where they were written."""
+    """Read a product in order; numbers stand where they were written.
+
+    Raises:
+        NotUnderstood: a group at a time, which is no product with it: (A P)(t).
+    """
+    for group, argument in pairwise(node.factors):
+        match group, argument:
+            case s.Dotted() | s.Fenced(), s.Fenced(s.Name() as time) if time_of(time) is not None:
+                raise NotUnderstood("a group at a time: write the time at each of its letters, as in A P(t)")
+            case _:
+                continue
     return multiplied([reader.read(factor) for factor in node.factors], reader)
 
 

@@ -15,12 +15,20 @@ if TYPE_CHECKING:
     from derive.interpret.reader import Reader
 
 ORDER = {"≥": ("⪰", "≥"), ">": ("≻", ">"), "⪰": ("⪰", "≥"), "≻": ("≻", ">")}
+LOGIC = frozenset(["or", "either", "if", "iff", "unless", "except", "when", "whenever", "then", "implies", "not"])
 TURNED = {"≤": "≥", "<": ">", "⪯": "⪰", "≺": "≻"}
 EXPECTED = "expected an equation or an inequality, as in P = A P A^T + Q or P \\succeq 0"
 
 
 def relations(display: s.Display) -> Iterator[s.Related]:
-    """Iterate over the relations of a display."""
+    """Iterate over the relations of a display.
+
+    Raises:
+        NotUnderstood: words between them that make another statement of them than all together.
+    """
+    for word in (w for words in display.words for w in words.lower().split()):
+        if word.strip(".,;:") in LOGIC:
+            raise NotUnderstood(f'"{word}" between formulas: write each as a claim, and conditions as assumptions')
     for statement in display.statements:
         yield from _relations(statement)
 

@@ -16,7 +16,7 @@ from derive.scalar.instances import Instance, Instances, Several
 from derive.scalar.ratio import Beyond, name_of
 from derive.scalar.reasons import letters_of
 from derive.scalar.system import POWERS, ROOTS, Case, Split, System
-from derive.terms import Equation, Symbol, walk
+from derive.terms import Dot, Equation, Symbol, walk
 from derive.theory.claims.base import split_index
 
 __all__ = ["Failure", "Work"]
@@ -111,10 +111,21 @@ def moving(statement: Statement) -> str:
     symbols = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Symbol)]
     if any(n.args not in ((), ("t",)) or n.name in TIMES for n in symbols):
         return "a function of time is not refuted by values at one instant"
+    if _undeclared_rate(statement):
+        return "a rate that the theory does not declare is not refuted by values at one instant"
     known = statement.theory.theory.symbols
     indices = {split_index(n.name)[1] for n in symbols if n.name in known and split_index(n.name)[0] != n.name}
     kinds = {"" if i.isdigit() else i[:1] for i in indices if i}
     return "indices that no step connects" if len(kinds) > 1 else ""
+
+
+def _undeclared_rate(statement: Statement) -> bool:
+    """Tell whether a claim has the derivative of a letter that an equation determines, but not its derivative."""
+    equations = [d.statement for d in statement.theory.theory.declared.values() if isinstance(d, Declared)]
+    found = {e.lhs for e in equations if e.relation in ("=", ":=")}
+    nodes = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side) if isinstance(n, Dot)]
+    letters = {n for node in nodes for n in walk(node) if isinstance(n, Symbol) and n.args}
+    return any(x in found and Dot(x) not in found for x in letters)
 
 
 def _systems(

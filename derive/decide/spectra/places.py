@@ -27,6 +27,7 @@ from derive.terms import Equation, Symbol, Term, Zero, walk
 __all__ = ["admissible", "decided", "difference", "places", "speaks_of_known_functions"]
 
 SEED, DRAWS, WANTED = 7, 4000, 14
+FIRST = 40  # plants of order one that come before larger ones, so that some of each are tried
 FUNCTIONS = frozenset("fpqφηζ")  # letters of a function of s, its zeros and poles
 FACTS = {"⪰": "psd", "≻": "pd"}
 
@@ -42,7 +43,8 @@ def places(statement: Statement) -> Iterator[Place]:
 # ------------------------------------------------------------------------------------------------ plants
 @cache
 def _plants(scalar: bool) -> tuple[Place, ...]:
-    return (*_of_order_one(), *(() if scalar else (*_by_hand(), *_drawn())))
+    small = tuple(_of_order_one())
+    return small if scalar else (*small[:FIRST], *_by_hand(), *_drawn(), *small[FIRST:])
 
 
 def _of_order_one() -> Iterator[Place]:

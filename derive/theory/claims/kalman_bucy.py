@@ -113,7 +113,8 @@ def declare(d: Draft) -> None:
     cross = d.has("N")
     _noise(d, cross)
     spectral = d.has(*(f"Phi_{k}({x})" for k in "yz" for x in ("s", "ω")))
-    if d.has("P", "K", "Sigma") or d.scalar(*"AC"):
+    plant = d.has("A") and d.has("C") and not (spectral or d.has(*ON_THE_WAY))  # (A, C) is detectable
+    if plant or d.has("P", "K", "Sigma") or d.scalar(*"AC"):
         _steady(d, cross)
     if d.has(*ON_THE_WAY):
         _transient(d, cross)

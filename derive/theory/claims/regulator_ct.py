@@ -39,7 +39,8 @@ def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
     costs(d)
     A, B, Q, R = d.of(*"ABQR")
-    if d.has("S", "K") or d.scalar(*"AB"):
+    plant = d.has("A") and d.has("B") and not d.has(*ON_THE_WAY, "x", "u")  # (A, B) is stabilisable
+    if plant or d.has("S", "K") or d.scalar(*"AB"):
         S, K = d.of("S", "K")
         d.assume("S >= 0", S, "⪰", text="a cost")
         d.define("steady cost", cost_rate(A, B, S, Q, R), Zero("n", "n"))

@@ -55,7 +55,8 @@ def costs(d: Draft) -> None:
 def declare(d: Draft) -> None:
     """Declare what bears on the letters that a claim uses."""
     costs(d)
-    if d.has("S", "K") or d.scalar(*"AB"):
+    plant = d.has("A") and d.has("B") and not d.indices()  # (A, B) is stabilisable
+    if plant or d.has("S", "K") or d.scalar(*"AB"):
         _steady(d)
     for letter, numbers in d.indices().items():
         _horizon(d, letter, numbers)
