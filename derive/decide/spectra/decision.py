@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from itertools import islice
 from typing import Any
 
@@ -220,8 +221,6 @@ def replay_theorems(data: Mapping[str, object], statement: Statement) -> None:
     Raises:
         Rejected: the theorems do not show the claim, or the certificate shows something else than its own.
     """
-    from derive.theory import lecture
-
     found = prove_by_theorems(statement)
     if found is None or not any(True for _ in places(statement)):
         raise Rejected("the theorems of the lecture do not show the claim")
@@ -229,7 +228,14 @@ def replay_theorems(data: Mapping[str, object], statement: Statement) -> None:
     wrong = sorted(key for key in {*again, *data} if again.get(key) != data.get(key))
     if wrong:
         raise Rejected(f"the file shows another {wrong[0]} than its own")
-    accepted = {outcome.step for outcome in lecture(STEPS).verify() if outcome.accepted}
-    missing = sorted(set(found.theorems) - accepted)
+    missing = sorted(set(found.theorems) - accepted_steps())
     if missing:
         raise Rejected(f"{missing[0]} is no accepted step of the lecture {STEPS}")
+
+
+@cache
+def accepted_steps() -> frozenset[str]:
+    """Return the steps of the lecture that replay."""
+    from derive.theory import lecture
+
+    return frozenset(outcome.step for outcome in lecture(STEPS).verify() if outcome.accepted)
