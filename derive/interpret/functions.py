@@ -24,6 +24,9 @@ def called(node: s.Called, reader: Reader) -> Typed:
     """Read a named function of its arguments."""
     if node.function in ("lim", "limit"):
         return limit(node, reader)
+    if node.sub is not None:
+        said = "write it by the natural logarithm" if node.function == "log" else "leave it out"
+        raise NotUnderstood(f"{node.function} with an index has no meaning here: {said}")
     arguments = [a for argument in node.arguments for a in listed(argument)]
     return call(node.function, [reader.read(a) for a in arguments], reader)
 

@@ -210,6 +210,8 @@ class Reader:
     def _product(self, head: s.Name, spelled: str, arguments: tuple[s.Node, ...]) -> Typed:
         """Read what looks like an application as a product, unless its argument can only be a time."""
         known = self.named(head)
+        if known is not None and isinstance(known[0], Symbol) and known[0].name in self.theory.theory.families:
+            raise NotUnderstood(f"{spelled}(...): that of A alone is read, as in \\lambda_i(A)")
         if known is None and not self.open and spelled != "I":
             raise unknown(f"{spelled}({', '.join(map(literal, arguments))})", self.theory)
         if len(arguments) != 1 or time_of(arguments[0]) is not None:

@@ -145,7 +145,7 @@ class Quantities(Recogniser):
         if self.statement.scalar:
             return self._letters(body)
         match body:
-            case Limit(inner):
+            case Limit(inner, Symbol(name="s"), Infinity()):
                 return self._limit(inner)
             case Sum(addends):
                 total = Form({})

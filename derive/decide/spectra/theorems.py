@@ -23,7 +23,7 @@ from fractions import Fraction
 
 from derive.decide.spectra.form import Form, NoForm
 from derive.decide.spectra.quantities import COST, POLES, TRACE, UNSTABLE, Quantities
-from derive.functions import Definite, Limit, Log, Max, Quotient  # fmt: skip
+from derive.functions import Definite, Infinity, Limit, Log, Max, Quotient  # fmt: skip
 from derive.interpret.shapes import rebuilt
 from derive.interpret.statement import Statement
 from derive.spectral import RealPart, Total
@@ -95,7 +95,10 @@ class Reduction(Quantities):
         return Sum(tuple(addends))
 
     def _in_the_limit(self, equation: Equation) -> bool:
-        """Show lim x(t) = y for x(t) = y with P(t), K(t) in the place of P, K: these tend to them."""
+        """Show lim x(t) = y, t to infinity, for x(t) = y with P(t), K(t) in the place of P, K: these tend to them."""
+        ends = {n.point for t in (equation.lhs, equation.rhs) for n in walk(t) if isinstance(n, Limit)}
+        if ends != {Infinity()} or equation.relation not in ("=", ":="):
+            return False
         s = self.statement.theory.theory.symbols
         sides = [x.body if isinstance(x, Limit) else x for x in (equation.lhs, equation.rhs)]
         limits = [isinstance(x, Limit) for x in (equation.lhs, equation.rhs)]

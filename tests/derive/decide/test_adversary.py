@@ -91,3 +91,34 @@ def test_a_rate_is_refuted_at_one_instant_otherwise(scalar: bool):
 )
 def test_plants_of_order_one_alone_do_not_support_a_claim(latex: str):
     assert verdict(KB, latex) is Verdict.refuted
+
+
+@pytest.mark.parametrize("point", [r"-\infty", "0"])
+def test_the_covariance_tends_to_the_steady_one_in_the_future_only(point: str):
+    assert verdict(KB, rf"\lim_{{t \to {point}}} P(t) = P") is not Verdict.proved
+    assert verdict(KB, r"\lim_{t \to \infty} P(t) = P") is Verdict.proved
+
+
+def test_a_limit_that_is_attained_by_nothing_is_not_strict():
+    assert verdict(KB, r"\lim_{t \to \infty} P(t) \succ P") is not Verdict.proved
+
+
+@pytest.mark.parametrize("point", ["0", r"-\infty", r"\infty"])
+def test_a_trace_of_a_limit_is_taken_where_it_says(point: str):
+    found = verdict(
+        KB, rf"\operatorname{{tr}}(\lim_{{s \to {point}}} s C (s I - A)^{{-1}} K) = \operatorname{{tr}}(C K)"
+    )
+    assert (found is Verdict.proved) <= (point == r"\infty")
+
+
+@pytest.mark.parametrize("log", [r"\log_{10}", r"\log_2", r"\log_b"])
+def test_a_logarithm_with_a_base_is_not_the_natural_one(log: str):
+    integral = rf"\frac{{1}}{{2\pi}} \int_{{-\infty}}^{{\infty}} {log} \frac{{\det \Phi_y(\omega)}}{{\det V}} d\omega"
+    poles = r"\sum_{i=1}^{m} \max\{0, \Re[\lambda_i(A)]\}"
+    with pytest.raises(NotUnderstood, match="index"):
+        verdict(KB, rf"{integral} = \operatorname{{tr}}(C P C^T V^{{-1}}) - 2 {poles}")
+
+
+def test_an_eigenvalue_of_another_matrix_is_no_product():
+    with pytest.raises(NotUnderstood, match="alone"):
+        verdict(KB, r"\lambda_i(A P) = \lambda_i(A) A P")
