@@ -39,7 +39,7 @@ def decide(statement: Statement, *, seconds: float = 10.0, explain: bool = False
 
 
 def _decided(statement: Statement, seconds: float, explain: bool, near: bool) -> Answer:
-    from derive.decide.kinds import is_analytic, is_matrix_claim
+    from derive.decide.kinds import has_no_real_instance, is_analytic, is_matrix_claim
 
     if is_analytic(statement):
         from derive.decide.spectra.decision import decide_spectra
@@ -53,6 +53,9 @@ def _decided(statement: Statement, seconds: float, explain: bool, near: bool) ->
         from derive.decide.matrix import decide_matrix
 
         answer = decide_matrix(statement, seconds, explain)
+        if answer.verdict is Verdict.refuted and has_no_real_instance(statement):
+            note = "it fails for real numbers, but j and eigenvalues are not any real numbers"
+            return Answer(Verdict.undecided, assumed=statement.assumed, notes=(note,))
         return _with_neighbours(answer, statement) if answer.verdict is Verdict.refuted and near else answer
     return Answer(Verdict.undecided, assumed=statement.assumed, notes=("there is no rule for claims of this kind",))
 

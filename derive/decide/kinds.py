@@ -33,7 +33,7 @@ from derive.terms import (
     walk,
 )
 
-__all__ = ["holds_along", "is_analytic", "is_matrix_claim"]
+__all__ = ["has_no_real_instance", "holds_along", "is_analytic", "is_matrix_claim"]
 
 MATRIX: tuple[type[Term], ...] = (
     Symbol, Number, Identity, Zero, Sum, Neg, Product, Transpose, Inverse, Dot, Expect, Integral, Delta, Trace,
@@ -67,6 +67,34 @@ def holds_along(statement: Statement) -> bool:
         for side in (e.lhs, e.rhs)
         for n in walk(side)
     )
+
+
+def has_no_real_instance(statement: Statement) -> bool:
+    """Tell whether a matrix claim means numbers that a real instance leaves free: j, or an eigenvalue of A.
+
+    An equation in jω alone is one between functions of s, which differ at a generic s where they differ at a real one.
+    """
+    families = statement.theory.theory.families
+    nodes = [n for e in statement.equations for side in (e.lhs, e.rhs) for n in walk(side)]
+    if any(isinstance(n, Symbol) and n.name in families for n in nodes):
+        return True
+    ordered = any(e.relation not in ("=", ":=") for e in statement.equations)
+    return any(_is_complex(n) for n in nodes) and (ordered or not _in_s_alone(nodes))
+
+
+def _is_complex(node: Term) -> bool:
+    return isinstance(node, Symbol) and (node.name == "j" or node.name.endswith("(ω)"))
+
+
+def _in_s_alone(nodes: list[Term]) -> bool:
+    """Tell whether j and ω stand in products jω only."""
+    counted = {k: sum(n.name == k for n in nodes if isinstance(n, Symbol)) for k in ("j", "ω")}
+    within = [
+        [sum(isinstance(f, Symbol) and f.name == k for f in n.factors) for k in ("j", "ω")]
+        for n in nodes
+        if isinstance(n, Product)
+    ]
+    return all(a == b for a, b in within) and [sum(x) for x in zip(*within, strict=True)] in ([*counted.values()], [])
 
 
 def is_matrix_claim(statement: Statement) -> bool:

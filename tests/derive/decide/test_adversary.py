@@ -122,3 +122,13 @@ def test_a_logarithm_with_a_base_is_not_the_natural_one(log: str):
 def test_an_eigenvalue_of_another_matrix_is_no_product():
     with pytest.raises(NotUnderstood, match="alone"):
         verdict(KB, r"\lambda_i(A P) = \lambda_i(A) A P")
+
+
+def test_a_real_number_for_j_refutes_nothing():
+    assert verdict(KB, r"\Phi_y(\omega) \succeq V") is not Verdict.refuted
+    wrong = r"\Phi_y(\omega) = C (j\omega I - A)^{-1} W (j\omega I - A^T)^{-1} C^T + V"
+    assert verdict(KB, wrong) is Verdict.refuted
+
+
+def test_an_eigenvalue_of_a_plant_is_no_free_number():
+    assert verdict(KB, r"\lambda_i(A) I = A", "m = 1") is not Verdict.refuted
