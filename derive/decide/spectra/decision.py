@@ -96,8 +96,12 @@ def _undecided(statement: Statement, note: str) -> Answer:
 
 
 def tried(statement: Statement, deadline: float) -> Trial:
-    """Evaluate a statement at plants that satisfy its hypotheses, the smallest first."""
+    """Evaluate a statement at plants that satisfy its hypotheses, the smallest first.
+
+    A strict inequality whose sides balls do not keep apart at some plant counts as enclosed at none.
+    """
     enclosed = count = 0
+    equal = False
     for place in islice(places(statement), MOST):
         if time.monotonic() > deadline:
             break
@@ -113,8 +117,9 @@ def tried(statement: Statement, deadline: float) -> Trial:
             if outcome is False:
                 return Trial((place, equation, ""), enclosed, count)
             outcomes.append(outcome)
+            equal |= outcome is None and equation.relation in (">", "≻")
         enclosed += len(outcomes) == len(statement.equations)
-    return Trial(None, enclosed, count)
+    return Trial(None, 0 if equal else enclosed, count)
 
 
 # ------------------------------------------------------------------------------------------------ refutation

@@ -132,3 +132,11 @@ def test_a_real_number_for_j_refutes_nothing():
 
 def test_an_eigenvalue_of_a_plant_is_no_free_number():
     assert verdict(KB, r"\lambda_i(A) I = A", "m = 1") is not Verdict.refuted
+
+
+def test_a_strict_inequality_is_not_supported_where_its_sides_may_be_equal():
+    poles = r"2 \sum_{i=1}^{m} \max\{0, \Re[\lambda_i(A)]\}"
+    cost = r"\operatorname{tr}(C P C^T V^{-1})"
+    assert verdict(KB, rf"{cost} \ge {poles}") is Verdict.supported
+    assert verdict(KB, rf"{cost} > {poles}") is Verdict.undecided
+    assert verdict(KB, r"\lambda_{\min}(P) > 0") is Verdict.undecided
