@@ -51,18 +51,18 @@ def decide_scalar(statement: Statement, *, seconds: float = 10.0, explain: bool 
         InputError: the assumptions contradict each other or the theory.
     """
     deadline = monotonic() + seconds
-    solution = evolution(statement)
-    if solution is not None:
-        return _solution(_decided(solution, deadline, explain, near=False, free=True), statement)
-    return _decided(statement, deadline, explain, near)
+    try:
+        solution = evolution(statement)
+        if solution is not None:
+            return _solution(_decided(solution, deadline, explain, near=False, free=True), statement)
+        return _decided(statement, deadline, explain, near)
+    except Beyond as error:
+        return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
 
 
 def _decided(statement: Statement, deadline: float, explain: bool, near: bool, free: bool = False) -> Answer:
     """Decide a statement; ``free`` says that the letters of several times are free of each other."""
-    try:
-        work = Work.of(statement, deadline)
-    except Beyond as error:
-        return Answer(Verdict.undecided, assumed=statement.assumed, notes=(str(error),))
+    work = Work.of(statement, deadline)
     work.moving = "" if free else work.moving
     _satisfiable(work)
     found = work.simplest(work.failures(work.instances.first(FIRST, POINTS)))

@@ -454,3 +454,8 @@ def test_what_is_refuted_at_a_small_plant_needs_no_z3():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["refuted", "False", "False"]
+
+
+def test_what_is_no_fraction_is_left_undecided():
+    claim = understand(read(r"\ddot P = 0"), claim_theory("kalman-bucy"), scalar=True)
+    assert decide_scalar(claim).verdict is Verdict.undecided
