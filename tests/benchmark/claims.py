@@ -32,7 +32,7 @@ def _ours() -> Iterator[Row]:
     wrong, decided, seconds = 0, 0, list[float]()
     for entry in entries():
         start = time.perf_counter()
-        claim = Claim(entry.latex, entry.theory, entry.assume, entry.scalar)
+        claim = Claim(entry.latex, entry.theory, entry.assume, entry.scalar, file="corpus")
         verdict = derive.check(claim).results[0].verdict
         seconds.append(time.perf_counter() - start)
         wrong += verdict == TOLD[not entry.truth]
