@@ -176,7 +176,7 @@ def _needed(statement: Statement, work: Workspace, names: Iterable[str]) -> dict
     for name in names:
         for equation in statement.equations:
             plain = oriented(equation, work.reading)
-            if rule_of(plain) in ("gradient", "trace", "trace order"):
+            if rule_of(plain) in ("gradient", "trace", "trace order", "expectation"):
                 continue
             ((left,), *more), difference = lower(plain.lhs, work.reading), order_claim(plain, work.reading)
             if more:
