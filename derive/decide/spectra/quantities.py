@@ -285,8 +285,6 @@ class Quantities(Recogniser):
         kind, power = self.recognised_as(log.body)
         if kind == "spectrum":
             return Form.number(power) * self._spectrum()
-        if kind == "one":
-            return Form({})
         self.used.append("Bode integral")
         return Form.number(power) * (Form.number(HALF) * Form.of(COST) - Form.of(UNSTABLE))
 
@@ -332,7 +330,7 @@ class Quantities(Recogniser):
                 self.used.append("roll-off" if kind == "loop" else "first term of spectrum")
                 return Form.number(power) * Form.of(COST) if kind == "loop" else Form({})
             case Trace(body):
-                if body != self.loop(self.symbol("s")) and not self.same_trace(body, self.loop(self.symbol("s"))):
+                if not self.same_trace(body, self.loop(self.symbol("s"))):
                     raise NoForm("the limit of another trace")
                 self.used.append("limit of s tr L")
                 return Form.of(COST)

@@ -71,7 +71,7 @@ class Recogniser:
         return one == other or self.proves(Equation(Trace(one), "=", Trace(other)))
 
     def recognised_as(self, body: Term) -> tuple[str, int]:
-        """Return what the argument of a logarithm is: "spectrum" det(Phi_y V^-1), "loop" |det(I + L)|, or "one".
+        """Return what the argument of a logarithm is: "spectrum" det(Phi_y V^-1), or "loop" |det(I + L)|.
 
         The number is its power, +1 or -1.
         """

@@ -17,14 +17,14 @@ those of I + L have real parts <= 0, so that the sums do not depend on cancellat
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from derive.analysis import put
 from derive.decide.spectra.form import Form, NoForm
 from derive.decide.spectra.quantities import COST, POLES, TRACE, UNSTABLE, Quantities
 from derive.functions import Definite, Infinity, Limit, Log, Max, Quotient  # fmt: skip
-from derive.interpret.shapes import rebuilt
 from derive.interpret.statement import Statement
 from derive.spectral import RealPart, Total
 from derive.terms import Equation, Number, Product, Sum, Symbol, Term, Zero, walk  # fmt: skip
@@ -104,13 +104,13 @@ class Reduction(Quantities):
         limits = [isinstance(x, Limit) for x in (equation.lhs, equation.rhs)]
         if sum(limits) != 1 or any(isinstance(n, Limit) for x in sides for n in walk(x)) or "P(t)" not in s:
             return False
-        moving: dict[Symbol, Term] = {s[k]: s[f"{k}(t)"] for k in "PK" if k in s and f"{k}(t)" in s}
+        moving: dict[Term, Term] = {s[k]: s[f"{k}(t)"] for k in "PK" if k in s and f"{k}(t)" in s}
         if "Sigma" in s and "P" in s:
             moving[s["Sigma"]] = s["C"] * s["P(t)"] * s["C"].T
         at_t, fixed = sides if limits[0] else sides[::-1]
         if any(isinstance(n, Symbol) and n in moving for n in walk(at_t)):
             return False
-        return self.proves(Equation(at_t, "=", _put(fixed, moving)))
+        return self.proves(Equation(at_t, "=", put(fixed, moving)))
 
     def _proves_scalar(self, equation: Equation) -> bool:
         from derive.claim import Verdict
@@ -132,14 +132,14 @@ class Reduction(Quantities):
                     form = _valued(form, "V", c.rhs.value)
         if self.stable("λ"):
             form = form.replaced(UNSTABLE, Form({}))
-        if self._quiet() and COST in form.names:
+        if COST in form.names and self._quiet():
             form = form.replaced(COST, Form.of(UNSTABLE) + Form.of(UNSTABLE))
             self.used.append("cost without process noise")
         return form
 
     def _quiet(self) -> bool:
         W = self.symbol("W")
-        return self.proves(Equation(W, "=", Zero(W.rows, W.cols))) if not self.statement.scalar else False
+        return not self.statement.scalar and self.proves(Equation(W, "=", Zero(W.rows, W.cols)))
 
     def _nonnegative(self) -> Iterator[tuple[str, Form]]:
         """Iterate over forms that are known not to be negative, with the step that says so."""
@@ -171,10 +171,3 @@ def _valued(form: Form, name: str, number: Fraction) -> Form:
             {tuple(sorted((n, p) for n, p in powers.items() if n != name)): c * number ** powers.get(name, 0)}
         )
     return total
-
-
-def _put(term: Term, images: Mapping[Symbol, Term]) -> Term:
-    def change(node: Term) -> Term:
-        return images[node] if isinstance(node, Symbol) and node in images else rebuilt(node, change)
-
-    return change(term)
