@@ -23,12 +23,10 @@ import cvxpy as cp
 import numpy as np
 
 from derive.numeric.plant import Plant
+from lmi.programs.observer import Unknowns, factor
 from lmi.programs.program import Matrix, Program
 
-__all__ = ["factor", "h2"]
-
-RANK_RTOL = 1e-14
-"""Eigenvalues of a covariance below this, relative to the largest, are rounding errors of a zero."""
+__all__ = ["cost_bound", "factor", "gramian", "h2"]
 
 
 def h2(plant: Plant) -> Program:
@@ -50,35 +48,24 @@ def h2(plant: Plant) -> Program:
         >>> bool(abs(program.answer()[1][0, 0] - 2.0) < 1e-6)
         True
     """
-    n, l = plant.n, plant.l  # noqa: E741 (the field's letter for the number of outputs)
-    E = factor(plant.M)
-    X = cp.Variable((n, n), symmetric=True, name="X")
-    Y = cp.Variable((n, l), name="Y")
+    unknowns = Unknowns.of(plant)
+    cost, bound = cost_bound(unknowns, plant.M)
+    problem = cp.Problem(cp.Minimize(cost), [*gramian(unknowns), *bound])
+    return Program("smallest H2 norm from noise to error", problem, unknowns.answer)
+
+
+def gramian(unknowns: Unknowns) -> list[cp.Constraint]:
+    """Ask that X^-1 be at least the covariance that the gain X^-1 Y leaves."""
+    F, X, B = unknowns.drift, unknowns.X, unknowns.noise
+    one = np.eye(B.shape[1])
+    if unknowns.plant.is_continuous:
+        return [cp.bmat([[-(F + F.T), B], [B.T, one]]) >> 0]
+    zero = np.zeros(B.shape)
+    return [cp.bmat([[X, F, B], [F.T, X, zero], [B.T, zero.T, one]]) >> 0]
+
+
+def cost_bound(unknowns: Unknowns, weight: Matrix) -> tuple[cp.Expression, list[cp.Constraint]]:
+    """Return tr(Z) and the constraint that makes it at least tr(M X^-1) for a weight M (n, n)."""
+    E = factor(weight)
     Z = cp.Variable((E.shape[1], E.shape[1]), symmetric=True, name="Z")
-    bound = cp.bmat([[Z, E.T], [E, X]])
-    problem = cp.Problem(cp.Minimize(cp.trace(Z)), [_gramian_inequality(plant, X, Y) >> 0, bound >> 0])
-
-    def answer() -> tuple[Matrix, Matrix]:
-        inverse = np.linalg.inv(np.asarray(X.value))
-        return (inverse + inverse.T) / 2, inverse @ np.asarray(Y.value)
-
-    return Program("smallest H2 norm from noise to error", problem, answer)
-
-
-def factor(covariance: Matrix) -> Matrix:
-    """Return G (n, rank) with G G' = covariance >= 0."""
-    sizes, directions = np.linalg.eigh(covariance)
-    kept = sizes > RANK_RTOL * max(sizes[-1], np.finfo(float).tiny)
-    kept[-1] = True
-    return directions[:, kept] * np.sqrt(np.maximum(sizes[kept], 0.0))
-
-
-def _gramian_inequality(plant: Plant, X: cp.Variable, Y: cp.Variable) -> cp.Expression:
-    """Return the matrix that is >= 0 when X^-1 is at least the covariance that the gain X^-1 Y leaves."""
-    noise = factor(np.block([[plant.W, plant.N], [plant.N.T, plant.V]]))
-    G, H = noise[: plant.n], noise[plant.n :]
-    F, B, identity = X @ plant.A - Y @ plant.C, X @ G - Y @ H, np.eye(noise.shape[1])
-    if plant.is_continuous:
-        return cp.bmat([[-(F + F.T), B], [B.T, identity]])
-    zero = np.zeros((plant.n, noise.shape[1]))
-    return cp.bmat([[X, F, B], [F.T, X, zero], [B.T, zero.T, identity]])
+    return cp.trace(Z), [cp.bmat([[Z, E.T], [E, unknowns.X]]) >> 0]
