@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from derive.numeric.modes import distance_to_stability, format_mode, spectral_scale
 from derive.numeric.plant import Plant
+from derive.numeric.simulation import Sample
 from lmi.enclosure import Enclosure
 from lmi.routes import Answer, RouteSpec, cost_of, output_of, output_rounding
+from lmi.sampling import SampleReading, read_sample
 from lmi.scaling import balanced
 
 __all__ = ["AGREEMENT", "TRUSTED", "Reference", "Route", "judged"]
@@ -39,31 +41,43 @@ class Route:
     """One row of the table.
 
     Attributes:
-        name: riccati, lmi-primal, lmi-dual, lmi-h2, interior-point, nlp, integral, hamiltonian or closed-form.
+        name: riccati, lmi-primal, lmi-dual, lmi-h2, interior-point, nlp, integral, hamiltonian, closed-form or
+            simulation.
         trace: tr P, or None.
         cost: tr(M P), or None.
+        P: error covariance (n, n), or None.
         output: tr(C P C' V^-1), in discrete time ln det(C P C' + V), or None.
         gain: observer gain (n, l), or None.
-        status: "solved", "stabilising", "strong", or what went wrong or does not apply, with the reason.
+        status: "solved", "stabilising", "strong", "sampled", or what went wrong or does not apply, with the reason.
         relative_difference: against Riccati, in tr P and tr(M P) if it gives P, else in the output; None if nothing.
+        difference: the same against the enclosure, a proved bound, or against Riccati where nothing is enclosed.
+        difference_from: "enclosure" or "riccati", or None when there is nothing to compare.
         residual: relative error that the route's own numbers admit, or None. For a covariance it is estimated by Newton
-            steps from it, for the integral it is the quadrature's estimate.
+            steps from it, for the integral it is the quadrature's estimate, for a sample its interval's half width.
         seconds: wall time.
         independent_of: names of the routes with which it shares no computation but the plant's data.
         output_error: proved bound of the error of `output`, absolute, or None when nothing is proved.
         output_digits: decimal digits of `output` that are proved correct, or None.
-        agrees: whether its result and Riccati's are both accurate, and equal.
-        disagrees: whether its result differs from Riccati's by more than the errors that both admit, or is proved to.
+        agrees: whether its result and Riccati's are both accurate, and equal; of a sample, whether its intervals hold
+            Riccati's result.
+        disagrees: whether its result differs from Riccati's by more than the errors that both admit, or is proved to;
+            of a sample, whether it is farther from Riccati's than chance can be.
         excluded: whether its output is proved to be wrong by more than the error that it admits.
+        sample: what P was sampled from, with the intervals; None for routes that compute.
+        iterations: steps that the method took, or None.
+        history: what was left to do after each step, in the method's own measure.
     """
 
     name: str
     trace: float | None
     cost: float | None
+    P: Matrix | None
     output: float | None
     gain: Matrix | None
     status: str
     relative_difference: float | None
+    difference: float | None
+    difference_from: str | None
     residual: float | None
     seconds: float
     independent_of: tuple[str, ...]
@@ -72,11 +86,19 @@ class Route:
     agrees: bool
     disagrees: bool
     excluded: bool
+    sample: Sample | None
+    iterations: int | None
+    history: tuple[float, ...]
 
     @property
     def trusted(self) -> bool:
         """Whether the route's own numbers show that its result is accurate."""
         return self.residual is not None and self.residual <= TRUSTED
+
+    @property
+    def confirms(self) -> bool:
+        """Whether it agrees to the accuracy of a computed answer; no sample does."""
+        return self.agrees and self.sample is None
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +134,23 @@ class Reference:
             trace = abs(float(np.trace(answer.P - riccati.P))) / self.trace_size
             return max(cost, trace)
         return None if answer.output is None else abs(answer.output - riccati.output) / self.output_size
+
+    def proved_difference(self, answer: Answer) -> float | None:
+        """Return a proved bound of an answer's relative error, or None when nothing is proved."""
+        if answer.P is None:
+            distance = self.enclosure.distance(answer.output)
+            return None if distance is None else distance / self.output_size
+        distances = self.enclosure.covariance_distances(float(np.trace(answer.P)), cost_of(self.plant, answer.P))
+        return None if distances is None else max(distances[0] / self.trace_size, distances[1] / self.cost_size)
+
+    def reading(self, answer: Answer) -> SampleReading | None:
+        """Return how a sampled answer stands to Riccati's, None when it is computed or Riccati's is worth nothing."""
+        errors = AGREEMENT + UNEXPLAINED * self.error(answer)
+        if answer.sample is None or self.answer.P is None or not np.isfinite(errors):
+            return None
+        T = balanced(self.plant).T
+        slack = VANISHING * np.diag(T @ T.T) + errors * np.abs(np.diag(self.answer.P))
+        return read_sample(answer.sample, self.answer.P, self.plant.M, slack)
 
     def residual(self, answer: Answer) -> float | None:
         """Return the relative error that an answer admits."""
@@ -165,29 +204,45 @@ def judged(spec: RouteSpec, answer: Answer, seconds: float, reference: Reference
     """Return the row of the table for what a route answered, compared with Riccati's answer."""
     P, plant = answer.P, reference.plant
     difference, residual = reference.difference(answer), reference.residual(answer)
-    agrees = disagrees = False
+    proved, reading = reference.proved_difference(answer), reference.reading(answer)
     excluded = reference.excludes(answer)
-    if difference is not None and residual is not None:
-        errors = max(residual, reference.error(answer))
-        agrees = errors <= TRUSTED and difference <= AGREEMENT and not excluded
-        disagrees = not difference <= max(AGREEMENT, UNEXPLAINED * errors)
+    agrees, disagrees = _verdict(answer, reading, difference, reference)
     return Route(
         name=spec.name,
         trace=None if P is None else float(np.trace(P)),
         cost=None if P is None else cost_of(plant, P),
+        P=P,
         output=answer.output,
         gain=answer.gain,
-        status=_status(answer, difference, residual, (disagrees, excluded), reference),
+        status=reading.status if reading else _status(answer, difference, residual, (disagrees, excluded), reference),
         relative_difference=difference,
+        difference=difference if proved is None else proved,
+        difference_from="enclosure" if proved is not None else None if difference is None else "riccati",
         residual=residual,
         seconds=seconds,
         independent_of=spec.independent_of,
         output_error=reference.enclosure.distance(answer.output),
         output_digits=reference.enclosure.correct_digits(answer.output),
-        agrees=agrees,
+        agrees=agrees and not excluded,
         disagrees=disagrees or excluded,
         excluded=excluded,
+        sample=answer.sample,
+        iterations=answer.iterations,
+        history=answer.history,
     )
+
+
+def _verdict(
+    answer: Answer, reading: SampleReading | None, difference: float | None, reference: Reference
+) -> tuple[bool, bool]:
+    """Return whether an answer agrees with Riccati's, and whether it disagrees; neither where it is not accurate."""
+    residual = reference.residual(answer)
+    if reading is not None:
+        return reading.holds and not reading.disagrees and reference.error(answer) <= TRUSTED, reading.disagrees
+    if difference is None or residual is None:
+        return False, False
+    errors = max(residual, reference.error(answer))
+    return errors <= TRUSTED and difference <= AGREEMENT, not difference <= max(AGREEMENT, UNEXPLAINED * errors)
 
 
 def _status(
@@ -199,7 +254,7 @@ def _status(
         return "disagrees: its output is proved to be wrong by more than its own error explains"
     if disagrees:
         return f"disagrees: differs from riccati by {difference:.1e}, more than the errors of both explain"
-    if answer.status.startswith("not ") or (residual is not None and residual <= TRUSTED):
+    if answer.status.startswith("not ") or answer.sample is not None or (residual is not None and residual <= TRUSTED):
         return answer.status
     modes = ", ".join(dict.fromkeys(map(format_mode, reference.modes_in_the_way())))
     if residual is not None and reference.answer.boundary_modes:

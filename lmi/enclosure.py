@@ -103,6 +103,17 @@ class Enclosure:
         distance = self.found.distance(output)
         return distance if np.isfinite(distance) else None
 
+    def covariance_distances(self, trace: float, cost: float) -> tuple[float, float] | None:
+        """Return proved bounds of |tr P - truth| and |tr(M P) - truth|, or None when nothing is proved about P."""
+        if self.found is None or not np.isfinite([trace, cost]).all():
+            return None
+        from derive.numeric.balls import working_bits
+
+        with working_bits(self.found.bits):
+            proved = self.found.by_solution
+            bounds = tuple(float(abs(x - y).abs_upper()) for x, y in ((proved.trace, trace), (proved.cost, cost)))
+        return (bounds[0], bounds[1]) if np.isfinite(bounds).all() else None
+
     def correct_digits(self, output: float | None) -> int | None:
         """Return how many decimal digits of an output are proved correct, or None when nothing is proved."""
         if self.found is None or output is None or not self.found.enclosed:

@@ -1,8 +1,8 @@
 """The independent ways to the optimal error covariance, each run on a plant and reported in one form."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from lmi.programs.program import Program
 from lmi.residual import riccati_residual
 from lmi.scaling import balanced, scaled_plant
 from lmi.solve import Status
+
+if TYPE_CHECKING:
+    from derive.numeric.simulation import Sample
 
 __all__ = [
     "ROUTES", "Answer", "RouteSpec", "cost_of", "nuclear_norm", "output_error", "output_of", "output_rounding",
@@ -40,6 +43,9 @@ class Answer:
         error: estimated absolute error, of tr(M P) when there is P, else of the output; infinite when P solves nothing.
         output_error: estimated absolute error of the output.
         boundary_modes: modes that a strong solution leaves on the boundary of stability.
+        sample: what P was sampled from, with its intervals; None when P was computed.
+        iterations: steps that the method took, or None where it takes none.
+        history: what is left to do after each step, in the method's own measure; empty when it does not tell.
     """
 
     status: str
@@ -49,6 +55,9 @@ class Answer:
     error: float = np.inf
     output_error: float = np.inf
     boundary_modes: tuple[complex, ...] = ()
+    sample: "Sample | None" = None
+    iterations: int | None = None
+    history: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -105,7 +114,8 @@ def _riccati(plant: Plant) -> Answer:
         return Answer(f"failed: no stabilising solution was reached; the mode nearest to the boundary is {mode}")
     P, gain = solution.P, solution.gain
     if solution.status == "stabilising":
-        return _covariance(plant, "stabilising", P, gain, covariance_error(plant, P))
+        answer = _covariance(plant, "stabilising", P, gain, covariance_error(plant, P))
+        return replace(answer, iterations=solution.newton_steps)
     modes = tuple(complex(mode) for mode in solution.boundary_modes)
     return _strong(plant, P, gain, solution.residual, modes)
 
@@ -119,7 +129,8 @@ def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
         if solution.P is None or solution.gain is None:
             return Answer(f"{outcome.status.value} (solver: {outcome.raw_status})")
         error = solution.error if outcome.status is Status.SOLVED else None
-        return _covariance(plant, outcome.status.value, solution.P, solution.gain, error)
+        answer = _covariance(plant, outcome.status.value, solution.P, solution.gain, error)
+        return replace(answer, iterations=outcome.iterations)
 
     return run
 
@@ -131,7 +142,8 @@ def _interior_point(plant: Plant) -> Answer:
     if found.P is None or found.gain is None:
         return Answer(found.status)
     error = covariance_error(plant, found.P) if found.status == Status.SOLVED.value else None
-    return _covariance(plant, found.status, found.P, found.gain, error)
+    answer = _covariance(plant, found.status, found.P, found.gain, error)
+    return replace(answer, iterations=len(found.history) - 1, history=found.history)
 
 
 def _nlp(plant: Plant) -> Answer:
@@ -142,7 +154,8 @@ def _nlp(plant: Plant) -> Answer:
         return Answer("failed: no stabilising gain was found")
     if result.status == "strong":
         return _strong(plant, result.P, result.gain, result.stationarity)
-    return _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
+    answer = _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
+    return replace(answer, iterations=result.iterations, history=tuple(getattr(result, "history", ())))
 
 
 def _covariance(plant: Plant, status: str, P: Matrix, gain: Matrix, error: Matrix | None) -> Answer:
@@ -206,22 +219,40 @@ def _closed_form(plant: Plant) -> Answer:
     return _strong(plant, P, gain, riccati_residual(plant, P), status=status)
 
 
+def _simulation(plant: Plant) -> Answer:
+    """Simulate the observer with Riccati's gain: that confirms the covariance of this gain, not the gain."""
+    from derive.numeric.riccati import solve_riccati
+    from derive.numeric.simulation import simulate_error
+
+    known = solve_riccati(plant)
+    if known.status == "failed":
+        return Answer("not applicable: there is no gain to simulate")
+    if known.status == "strong":
+        mode = format_mode(complex(known.boundary_modes[0]))
+        return Answer(f"not applicable: mode {mode} of A - L C does not decay, so no error is steady")
+    found = simulate_error(plant, known.gain)
+    if found.sample is None:
+        return Answer(found.status)
+    return Answer(found.status, found.sample.P, error=found.sample.cost.half_width, sample=found.sample)
+
+
 _CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2")
 _OTHERS = ("nlp", "integral", "closed-form")
+_APART = (*_CONVEX, *_OTHERS)
+_BASED = ("hamiltonian", "simulation")
 
 ROUTES = (
-    RouteSpec("riccati", _riccati, (*_CONVEX, *_OTHERS)),
-    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
-    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, "hamiltonian"), largest=30),
-    RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, "hamiltonian"), largest=20),
+    RouteSpec("riccati", _riccati, _APART),
+    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, *_BASED), largest=30),
+    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, *_BASED), largest=30),
+    RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, *_BASED), largest=20),
     RouteSpec("interior-point", _interior_point, _OTHERS, largest=120),
-    RouteSpec(
-        "nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "hamiltonian", "closed-form"), largest=40
-    ),
-    RouteSpec("integral", _integral, ("riccati", *_CONVEX, "interior-point", "nlp", "hamiltonian", "closed-form")),
-    RouteSpec("hamiltonian", _hamiltonian, (*_CONVEX, "nlp", "integral", "closed-form")),
-    RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", "hamiltonian")),
+    RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "closed-form", *_BASED), largest=40),
+    RouteSpec("integral", _integral, ("riccati", *_CONVEX, "interior-point", "nlp", "closed-form", *_BASED)),
+    RouteSpec("hamiltonian", _hamiltonian, _APART),
+    RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", *_BASED)),
+    RouteSpec("simulation", _simulation, _APART, largest=50),
 )
 """Riccati first. The convex programs share coordinates and solver, Riccati and the Hamiltonian's eigenvalues the same
-matrix, and the interior-point method starts from the Riccati equation's answer, so that these do not confirm each
-other."""
+matrix, the interior-point method starts from the Riccati equation's answer and the simulation runs with its gain, so
+that these do not confirm each other. A sampled answer confirms nothing; it may disagree."""

@@ -9,14 +9,17 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
 from lmi.certification_outcome import CertificateOutcome, attempt_certificate
 from lmi.comparison import AGREEMENT, Reference, Route, judged
 from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
-from lmi.routes import ROUTES, Answer, RouteSpec, nuclear_norm
+from lmi.routes import ROUTES, Answer, RouteSpec, cost_of, nuclear_norm
 
-__all__ = ["Route", "Validation", "Verdict", "validate"]
+__all__ = ["FilterForm", "Route", "Validation", "Verdict", "validate"]
+
+Matrix = NDArray[np.floating[Any]]
 
 
 class Verdict(Enum):
@@ -30,6 +33,23 @@ class Verdict(Enum):
     def exit_code(self) -> int:
         """Return 0, 1 or 3 for the command line."""
         return {Verdict.AGREE: 0, Verdict.DISAGREE: 1, Verdict.UNCONFIRMED: 3}[self]
+
+
+@dataclass(frozen=True, eq=False)
+class FilterForm:
+    """The discrete optimum after the measurement of the same instant.
+
+    Attributes:
+        P: covariance P+ (n, n) [state]^2.
+        gain: L_f (n, l) [state]/[output].
+        trace: tr P+.
+        cost: tr(M P+).
+    """
+
+    P: Matrix
+    gain: Matrix
+    trace: float
+    cost: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,19 +87,41 @@ class Validation:
     def confirming(self) -> tuple[Route, ...]:
         """The routes that share no computation with Riccati's and agree with it."""
         riccati = self.routes[0].name
-        return tuple(route for route in self.routes if route.agrees and riccati in route.independent_of)
+        return tuple(route for route in self.routes if route.confirms and riccati in route.independent_of)
+
+    @property
+    def filter_form(self) -> FilterForm | None:
+        """Riccati's answer in filter form; None in continuous time, or without an answer."""
+        P = self.routes[0].P
+        if self.plant.is_continuous or P is None or not np.isfinite(P).all():
+            return None
+        from derive.numeric.filter_form import filter_covariance, filter_gain
+
+        after = filter_covariance(self.plant, P)
+        cost = cost_of(self.plant, after)
+        return FilterForm(after, filter_gain(self.plant, P), float(np.trace(after)), cost)
+
+    def __str__(self) -> str:
+        """Return the table, what is proved, and the verdict, as the command line prints them."""
+        from io import StringIO
+
+        from lmi.report import print_table
+
+        out = StringIO()
+        print_table(self, out)
+        return out.getvalue().rstrip()
+
+    def _repr_html_(self) -> str:
+        """Return the same for a notebook."""
+        from lmi.report_notebook import as_html
+
+        return as_html(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the validation as plain data, schema lmi-validate/1."""
-        return {
-            "schema": "lmi-validate/1",
-            "plant": _plant_dict(self.plant),
-            "routes": [_route_dict(route) for route in self.routes],
-            "enclosure": self.enclosure.as_dict(),
-            "certificate": self.certificate.as_dict(),
-            "certificate_status": self.certificate.status,
-            "verdict": self.verdict.value,
-        }
+        from lmi.report_data import as_dict
+
+        return as_dict(self)
 
 
 def validate(
@@ -152,31 +194,3 @@ class _Run:
         except NUMERICAL_ERRORS as error:
             answer = Answer(f"failed: {' '.join(str(error).split()) or type(error).__name__}")
         return answer, perf_counter() - start
-
-
-def _route_dict(route: Route) -> dict[str, Any]:
-    return {
-        "name": route.name,
-        "trace": _finite(route.trace),
-        "cost": _finite(route.cost),
-        "output": _finite(route.output),
-        "gain": None if route.gain is None or not np.isfinite(route.gain).all() else route.gain.tolist(),
-        "status": route.status,
-        "relative_difference": _finite(route.relative_difference),
-        "residual": _finite(route.residual),
-        "output_error": route.output_error,
-        "output_digits": route.output_digits,
-        "seconds": route.seconds,
-        "independent_of": list(route.independent_of),
-    }
-
-
-def _finite(value: float | None) -> float | None:
-    return value if value is not None and np.isfinite(value) else None
-
-
-def _plant_dict(plant: Plant) -> dict[str, Any]:
-    """Return the keys of a plant file."""
-    data: dict[str, Any] = {"name": plant.name, "time": plant.time}
-    data |= {key: getattr(plant, key).tolist() for key in ("A", "C", "W", "V", "N", "M")}
-    return data

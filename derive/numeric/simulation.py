@@ -227,13 +227,14 @@ def _scaled_gain(plant: Plant, form: NormalForm, gain: Matrix) -> Matrix:
 def _too_slow(plant: Plant, modes: NDArray[Any]) -> str:
     """Return why the modes cannot be simulated, or nothing."""
     slowest = _time_constant(plant, modes)
+    mode = format_mode(modes[np.argmax(distance_to_stability(modes, plant.time))])
     if not plant.is_continuous:
         return "" if slowest <= LONGEST else (
-            f"not applicable: slowest time constant {slowest:.2g} steps; up to {LONGEST} are simulated"
+            f"not applicable: slowest time constant {slowest:.2g} steps (mode {mode}); up to {LONGEST} are simulated"
         )  # fmt: skip
     ratio = slowest * float(np.abs(modes).max())
     return "" if ratio <= STIFFEST else (
-        f"not applicable: slowest time constant {slowest:.2g} s, {ratio:.0e} times the fastest; "
+        f"not applicable: slowest time constant {slowest:.2g} s (mode {mode}), {ratio:.0e} times the fastest; "
         f"up to {STIFFEST:.0e} is simulated"
     )  # fmt: skip
 

@@ -23,7 +23,7 @@ from lmi.validation import Verdict, validate
 
 TIMES = ("continuous", "discrete")
 CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2", "interior-point")
-NAMES = ("riccati", *CONVEX, "nlp", "integral", "hamiltonian", "closed-form")
+NAMES = ("riccati", *CONVEX, "nlp", "integral", "hamiltonian", "closed-form", "simulation")
 
 
 def run_only(monkeypatch, **runs):
@@ -38,9 +38,11 @@ def test_every_route_agrees_on_the_aircraft():
     validation = validate(example_plant())
     assert tuple(route.name for route in validation.routes) == NAMES
     assert validation.verdict is Verdict.AGREE
-    for route in validation.routes[:-1]:
+    for route in validation.routes[:-2]:
         assert route.trusted, route
         assert route.relative_difference < AGREEMENT, route
+        assert route.difference_from == "enclosure"
+        assert route.difference < AGREEMENT, route
     assert validation.route("closed-form").status == "not applicable: for at most 3 states, not 4"
 
 
@@ -52,8 +54,12 @@ def test_every_route_agrees_on_random_plants(time, n, random_plant):
     expected = solve_riccati(plant).P
     assert validation.verdict is Verdict.AGREE
     for route in validation.routes:
-        if route.name != "closed-form" or n == 1:
+        if route.name != "closed-form" or n <= 3:
             assert route.agrees, route
+        if route.name == "simulation":
+            lower, upper = route.sample.trace.interval
+            assert lower < np.trace(expected) < upper
+            continue
         if route.trace is not None:
             assert route.trace == pytest.approx(np.trace(expected), rel=AGREEMENT)
             assert route.cost == pytest.approx(np.trace(plant.M @ expected), rel=AGREEMENT)
@@ -246,13 +252,16 @@ def test_routes_name_each_other_as_independent_both_ways():
 
 def test_json_has_the_keys_of_the_schema_and_the_plant_can_be_read_back():
     data = json.loads(json.dumps(validate(example_plant()).as_dict(), allow_nan=False))
-    assert list(data) == ["schema", "plant", "routes", "enclosure", "certificate", "certificate_status", "verdict"]
+    old = ["schema", "plant", "routes", "enclosure", "certificate", "certificate_status", "verdict"]
+    assert set(data) == {*old, "covariance", "filter", "bounds", "reason"}
     assert data["schema"] == "lmi-validate/1"
     assert (data["certificate"]["schema"], data["certificate_status"]) == ("lmi-certificate/1", "certified")
     assert data["verdict"] == "agree"
     keys = {"name", "trace", "cost", "gain", "status", "relative_difference", "seconds", "independent_of"}
+    keys |= {"output", "residual", "output_error", "output_digits", "difference", "difference_from"}
     for route in data["routes"]:
-        assert keys | {"output", "residual", "output_error", "output_digits"} == set(route)
+        assert keys | {"interval", "sample", "iterations", "history"} == set(route)
+        assert (route["interval"] is None) == (route["name"] != "simulation")
     assert [route["name"] for route in data["routes"]] == list(NAMES)
     again = plant_from_mapping(data["plant"])
     np.testing.assert_array_equal(again.A, example_plant().A)
