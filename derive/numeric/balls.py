@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import floor, frexp, log10
+from math import floor, log10
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ __all__ = [
     "scaled_floats", "widened", "working_bits",
 ]  # fmt: skip
 
+DOUBLE_BITS = 53
 BITS_PER_DIGIT = 3.3219280948873623
 
 
@@ -122,5 +123,6 @@ def digits_of(radius: arb, size: arb) -> int:
     if size.is_zero():
         return 0
     man, exp = (radius / size).abs_upper().man_exp()
-    fraction, shift = frexp(int(man))
-    return int(min(most, max(0, floor(-(log10(fraction) + (shift + int(exp)) * log10(2))))))
+    spare = max(0, int(man).bit_length() - DOUBLE_BITS)
+    leading = (int(man) >> spare) + 1
+    return int(min(most, max(0, floor(-(log10(leading) + (spare + int(exp)) * log10(2))))))

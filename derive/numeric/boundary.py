@@ -37,9 +37,7 @@ class Boundary:
     modes: NDArray[np.complexfloating[Any, Any]]
 
 
-def unexcited_boundary(
-    F: Matrix, W: Matrix, time: Time, rate: float, noise_size: float, slack: float = 1.0
-) -> Boundary:
+def unexcited_boundary(F: Matrix, W: Matrix, time: Time, rate: float, noise: Matrix, slack: float = 1.0) -> Boundary:
     """Find the largest subspace X with F' X in X, W X = 0 and the spectrum of F' on X on the boundary.
 
     On X every solution P >= 0 vanishes: for a left eigenvector x, 2 Re(lambda) x*Px = |V^(-1/2) C P x|^2 gives
@@ -52,7 +50,7 @@ def unexcited_boundary(
         W: W - N V^-1 N' (n, n), in the same coordinates.
         time: "continuous" or "discrete".
         rate: size of A, to which rounding in F is relative.
-        noise_size: size of the process noise to which rounding in W is relative.
+        noise: sizes of the entries of the process noise (n, n) to which rounding in W is relative.
         slack: factor on the tolerances, for data that carry the rounding of earlier computations.
     """
     n = len(F)
@@ -60,7 +58,7 @@ def unexcited_boundary(
     nothing = Boundary(np.eye(n), np.zeros((n, 0)), np.zeros(0, complex))
     near = invariant_subspace(F.T, lambda mode: bool(abs(distance_to_stability(mode, time)) <= CANDIDATE_RTOL * scale))
     rtol = slack * n * RANK_RTOL
-    near = near @ unseen_subspace(near.T @ F.T @ near, W @ near, rtol * noise_size, rtol * scale)
+    near = near @ unseen_subspace(near.T @ F.T @ near, W @ near, rtol * float(np.linalg.norm(noise)), rtol * scale)
     if near.shape[1] == 0:
         return nothing
     restricted = near.T @ F.T @ near
@@ -73,6 +71,8 @@ def unexcited_boundary(
     chosen = [mode for cluster in clusters for mode in cluster]
     others = [mode for mode in modes if mode not in chosen]
     removed = near @ invariant_subspace(restricted, lambda mode: nearest(mode, chosen) <= nearest(mode, others))
+    if np.any(np.abs(removed.T @ W @ removed) > rtol * np.abs(removed).T @ noise @ np.abs(removed)):
+        return nothing  # faint noise beside strong noise, but no rounding
     kept = np.linalg.qr(removed, mode="complete")[0][:, removed.shape[1] :]
     means = np.concatenate([np.full(len(cluster), np.mean(cluster)) for cluster in clusters])
     return Boundary(kept, removed, _snapped(means, time))

@@ -1,15 +1,16 @@
 """Rigorous enclosure of the stabilising Riccati solution: Newton's method, then a proof in ball arithmetic."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from flint import arb, arb_mat
 from numpy.typing import NDArray
 
-from derive.numeric.balls import bits_for, digits_of, exact, floats, middle, norm, working_bits
+from derive.numeric.balls import bits_for, exact, floats, middle, working_bits
+from derive.numeric.high_precision import Closed, closed_ball
 from derive.numeric.modes import Matrix, distance_to_stability, format_mode
-from derive.numeric.newton import Equation, prove, refined
+from derive.numeric.newton import Equation
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import RiccatiSolution, solve_riccati
 
@@ -17,14 +18,8 @@ __all__ = ["EnclosureStatus", "RiccatiEnclosure", "enclose_riccati", "encloses",
 
 EnclosureStatus = Literal["verified", "boundary", "open"]
 
-SPARE_BITS = 64
-"""Bits beyond the digits asked for, which pay for the rounding of the proof."""
-
 BOUNDARY_RTOL = 1e-7
 """Relative distance of the slowest mode from the boundary below which a failure is put down to it."""
-
-ATTEMPTS = 4
-"""Attempts, each with twice the bits of the one before."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -38,6 +33,7 @@ class RiccatiEnclosure:
             told from it; "open" when no ball could be closed.
         reason: one line that says why there is no proof, with the mode; empty when verified.
         P: balls (n, n) that hold P; None unless verified.
+        gain: balls (n, l) that hold the optimal gain L; None unless verified.
         radius: bound of |P - centre|_2, with `centre` the middles of `P`.
         digits: decimal digits of P that are proved, relative to |P| in balanced coordinates.
         trace: encloses tr(P).
@@ -45,11 +41,14 @@ class RiccatiEnclosure:
         output_cost: encloses tr(C P C' V^-1), in discrete time ln det(C P C' + R).
         closed_loop: eigenvalues of A - L C in floating point (n,).
         bits: working precision.
+        solution: the solution in floating point that was started from, with its condition number and the modes near the
+            boundary; None when a given P was verified.
     """
 
     status: EnclosureStatus
     reason: str = ""
     P: arb_mat | None = None
+    gain: arb_mat | None = None
     radius: float = float("inf")
     digits: int = 0
     trace: arb = arb("nan")  # noqa: RUF009 (balls are immutable)
@@ -57,6 +56,15 @@ class RiccatiEnclosure:
     output_cost: arb = arb("nan")  # noqa: RUF009
     closed_loop: NDArray[Any]
     bits: int
+    solution: RiccatiSolution | None = None
+
+    def distance(self, P: Matrix) -> float:
+        """Return a proved bound of the Frobenius norm |P - P*| for any P (n, n), infinite unless verified."""
+        if self.P is None:
+            return float("inf")
+        with working_bits(self.bits):
+            sizes = [x.abs_upper() for x in (self.P - exact(P)).entries()]
+            return float(sum((x * x for x in sizes), arb(0)).sqrt().abs_upper())
 
     @property
     def centre(self) -> Matrix:
@@ -86,18 +94,11 @@ def enclose_riccati(plant: Plant, digits: int = 30) -> RiccatiEnclosure:
         ('verified', True)
     """
     solution = solve_riccati(plant)
-    if solution.status != "stabilising":
-        return _not_started(solution, bits_for(digits))
-    bits = bits_for(digits) + SPARE_BITS
-    for attempt in range(ATTEMPTS):
-        with working_bits(bits):
-            equation = Equation.of(plant)
-            P = refined(equation, equation.scaled(solution.P), in_balls=attempt > 0)
-            found = _enclosure(plant, equation, P, solution.closed_loop, bits)
-        if found.status == "verified" and found.digits >= digits:
-            break
-        bits *= 2
-    return found
+    if solution.status == "stabilising":
+        closed = closed_ball(plant, solution.P, digits)
+        with working_bits(closed.bits):
+            return replace(_enclosure(plant, closed, solution.closed_loop), solution=solution)
+    return _not_started(solution, bits_for(digits))
 
 
 def verify_riccati(plant: Plant, P: Matrix, bits: int = 128) -> RiccatiEnclosure:
@@ -110,7 +111,7 @@ def verify_riccati(plant: Plant, P: Matrix, bits: int = 128) -> RiccatiEnclosure
         equation = Equation.of(plant)
         centre = middle(equation.scaled(P))
         loop = np.linalg.eigvals(floats(equation.closed_loop(centre)))
-        return _enclosure(plant, equation, centre, loop, bits)
+        return _enclosure(plant, Closed.of(equation, centre, bits), loop)
 
 
 def encloses(plant: Plant, claimed: arb_mat, digits: int = 30) -> bool:
@@ -127,34 +128,46 @@ def encloses(plant: Plant, claimed: arb_mat, digits: int = 30) -> bool:
 
 def _not_started(solution: RiccatiSolution, bits: int) -> RiccatiEnclosure:
     modes = ", ".join(map(format_mode, solution.boundary_modes))
-    if solution.status == "strong":
-        reason = f"closed loop: expected stable, got {modes}, unexcited, on the boundary or too near to tell"
-        return RiccatiEnclosure(status="boundary", reason=reason, closed_loop=solution.closed_loop, bits=bits)
-    reason = "closed loop: expected a stabilising start for Newton's method, got none; is (A, C) detectable?"
-    return RiccatiEnclosure(status="open", reason=reason, closed_loop=solution.closed_loop, bits=bits)
+    unexcited = f"closed loop: expected stable, got {modes}, unexcited, on the boundary or too near to tell"
+    return RiccatiEnclosure(
+        status="boundary" if len(solution.near_boundary) else "open",
+        reason=solution.reason or unexcited,
+        closed_loop=solution.closed_loop,
+        bits=bits,
+        solution=solution,
+    )
 
 
-def _enclosure(plant: Plant, equation: Equation, P: arb_mat, loop: NDArray[Any], bits: int) -> RiccatiEnclosure:
-    proof = prove(equation, P)
-    if proof.radius is None:
+def _enclosure(plant: Plant, closed: Closed, loop: NDArray[Any]) -> RiccatiEnclosure:
+    if closed.proof.radius is None:
         slow = _slowest(plant, loop)
         near = slow is not None and abs(distance_to_stability(slow, plant.time)) <= BOUNDARY_RTOL * abs(slow)
         mode = "unknown" if slow is None else f"about {format_mode(slow)}"
-        reason = f"{proof.reason}; the slowest mode of the closed loop is {mode}"
-        return RiccatiEnclosure(status="boundary" if near else "open", reason=reason, closed_loop=loop, bits=bits)
-    digits = digits_of(proof.radius, norm(P) / max(1, plant.n) ** 0.5)
-    P, radius = equation.unscaled(P, proof.radius)
+        reason = f"{closed.proof.reason}; the slowest mode of the closed loop is {mode}"
+        status = "boundary" if near else "open"
+        return RiccatiEnclosure(status=status, reason=reason, closed_loop=loop, bits=closed.bits)
+    P, radius = closed.equation.unscaled(closed.P, closed.proof.radius)
     return RiccatiEnclosure(
         status="verified",
         P=P,
+        gain=_gain(plant, P),
         radius=float(radius.abs_upper()),
-        digits=digits,
+        digits=closed.digits,
         trace=P.trace(),
         cost=_trace_of_product(exact(plant.M), P),
         output_cost=_output_cost(plant, P),
         closed_loop=loop,
-        bits=bits,
+        bits=closed.bits,
     )
+
+
+def _gain(plant: Plant, P: arb_mat) -> arb_mat:
+    """Return L = (P C' + N) V^-1, in discrete time L = (A P C' + S) (C P C' + R)^-1."""
+    A, C, N, S = exact(plant.A), exact(plant.C), exact(plant.N), exact(plant.V)
+    PC = P * C.transpose()
+    if not plant.is_continuous:
+        PC, S = A * PC, S + C * PC
+    return S.solve((PC + N).transpose()).transpose()
 
 
 def _slowest(plant: Plant, modes: NDArray[Any]) -> complex | None:

@@ -17,9 +17,11 @@ MODE_RTOL = 1e-7
 
 
 def balancing(A: Matrix) -> Matrix:
-    """Return powers of two t that make rows and columns of A t_j / t_i alike in size."""
+    """Return powers of two t that make rows and columns of A t_j / t_i alike in size; ones where A is not finite."""
     from scipy.linalg import lapack
 
+    if not np.isfinite(A).all():
+        return np.ones(len(A))
     return cast(Any, lapack).dgebal(A, scale=1, permute=0)[3]
 
 

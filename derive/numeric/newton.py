@@ -17,6 +17,9 @@ __all__ = ["Equation", "Proof", "lyapunov_in_balls", "prove", "refined"]
 STEPS = 80
 """Newton steps; each with a Lyapunov solution in double precision gains some of its digits."""
 
+SHRINKING = 0.75
+"""Ratio of successive steps above which they no longer converge; far from the solution they halve."""
+
 DOUBLINGS = 256
 """Squarings of the closed loop before a Lyapunov solution is given up."""
 
@@ -119,7 +122,7 @@ def refined(equation: Equation, P: arb_mat, in_balls: bool = False) -> arb_mat:
     for _ in range(STEPS):
         D = _correction(equation, P, in_balls)
         step = norm(D)
-        if not step.is_finite() or (before is not None and not step < before / 2):
+        if not step.is_finite() or (before is not None and not step < before * SHRINKING):
             return P
         P, before = middle(P + D), step
         if step <= norm(P) * arb(2) ** (12 - ctx.prec):

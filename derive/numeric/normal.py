@@ -52,8 +52,8 @@ class NormalForm:
     def boundary(self, slack: float = 1.0) -> Boundary:
         """Find the boundary modes of F that the noise does not excite; see `unexcited_boundary`."""
         F, _, W = self.uncorrelated()
-        rate, noise_size = np.linalg.norm(self.A.astype(float), 2), np.linalg.norm(self.W.astype(float))
-        return unexcited_boundary(F, W, self.time, float(rate), float(noise_size), slack)
+        rate, noise = np.linalg.norm(self.A.astype(float), 2), np.abs(self.W) + np.abs(self.N) @ np.abs(self.N.T)
+        return unexcited_boundary(F, W, self.time, float(rate), noise.astype(float), slack)
 
     def without(self, boundary: Boundary) -> "NormalForm":
         """Return the form that is left when the boundary's subspace is removed."""

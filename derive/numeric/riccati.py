@@ -1,26 +1,22 @@
 """The Riccati equations of the steady optimal estimator, continuous and discrete."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.extended import divided
-from derive.numeric.lyapunov import error_covariance, solve_lyapunov
-from derive.numeric.modes import Matrix, distance_to_stability
+from derive.numeric.modes import Matrix, distance_to_stability, format_mode, spectral_scale
 from derive.numeric.normal import NormalForm, normal_form
 from derive.numeric.plant import Plant
-from derive.numeric.stabilise import stabilising_gain
+from derive.numeric.riccati_iterations import Candidate, best_candidate
+from derive.numeric.sensitivity import sensitivity
 
 __all__ = ["RiccatiSolution", "Status", "solve_riccati"]
 
+Modes = NDArray[np.complexfloating[Any, Any]]
 Status = Literal["stabilising", "strong", "failed"]
-
-NEWTON_STEPS = 10
-KLEINMAN_STEPS = 60
-ACCURATE = 1e-13
-"""Relative residual above which a second method is tried."""
 
 FAILED = 1e-6
 """Relative residual above which there is no solution to speak of."""
@@ -28,29 +24,61 @@ FAILED = 1e-6
 ROUNDED_SLACK = 1e3
 """Factor on the tolerances for boundary modes when nothing is found without it: data that carry earlier rounding."""
 
+INACCURATE = 1e-13
+"""Relative error above which the solution is computed again in high precision."""
 
-@dataclass(frozen=True, eq=False)
+DIGITS = 20
+"""Decimal digits that high precision aims at."""
+
+LARGEST = 64
+"""States up to which it takes a second or so."""
+
+NEAR_RTOL = 1e-6
+"""Distance of a mode from the boundary, relative to A, within which it is named as near."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class RiccatiSolution:
     """The steady error covariance and the optimal gain.
 
     Attributes:
         P: error covariance (n, n) [state]^2, of the predicted state in discrete time.
         gain: L (n, l) of the observer x' = A x + L (y - C x), in discrete time of the predictor.
-        closed_loop: eigenvalues of A - L C (n,).
+        closed_loop: eigenvalues of A - L C (n,): half of those of the Hamiltonian matrix (symplectic pencil), of which
+            the others are the mirror images.
         residual: |residual of the equation| / sum of the sizes of its terms, in balanced coordinates.
         status: "stabilising" when A - L C is asymptotically stable, "strong" when it keeps boundary modes that the
             noise does not excite, "failed" when neither was reached (P is then the best attempt, or not a number).
+        reason: why it failed, in one line; empty when it did not.
+        error: estimated bound of |P - P*|_ij (n, n) [state]^2, infinite when it failed. `enclose_riccati` proves one.
+        condition: relative change of P for a relative change of A, W, C'V^-1 C in balanced coordinates, to first order
+            and at most; 0 when P = 0, infinite when it failed.
+        near_boundary: those of `closed_loop` on the boundary of stability, or nearer to it than 1e-6 of the size of A.
         boundary_modes: eigenvalues that the strong solution leaves on the boundary, empty when it is stabilising.
-        newton_steps: accepted Newton steps.
+        newton_steps: accepted Newton steps in extended precision.
     """
 
     P: Matrix
     gain: Matrix
-    closed_loop: NDArray[np.complexfloating[Any, Any]]
+    closed_loop: Modes
     residual: float
     status: Status
-    boundary_modes: NDArray[np.complexfloating[Any, Any]]
+    reason: str = ""
+    error: Matrix
+    condition: float
+    near_boundary: Modes
+    boundary_modes: Modes
     newton_steps: int
+
+    def is_stable(self, plant: Plant) -> bool:
+        """Whether the computed eigenvalues of A - L C are stable."""
+        return bool(np.all(distance_to_stability(self.closed_loop, plant.time) < 0))
+
+    @property
+    def relative_error(self) -> float:
+        """Estimated bound of |P - P*| / |P|, Frobenius norms; 0 when there is no error."""
+        error = float(np.linalg.norm(self.error))
+        return error / float(np.linalg.norm(self.P)) if error else 0.0
 
 
 def solve_riccati(plant: Plant) -> RiccatiSolution:
@@ -62,6 +90,8 @@ def solve_riccati(plant: Plant) -> RiccatiSolution:
     The cross term is removed (F = A - N V^-1 C, W - N V^-1 N'), V made the identity, the states scaled by powers of
     two, and unexcited boundary modes are split off, on which P vanishes. SciPy's answer, or where that is not
     accurate the one of Kleinman's iteration, is refined by Newton steps whose residual is formed in extended precision.
+    Where the estimated error is more than rounding or stability is in doubt, all is done again in high precision, which
+    ends in a proof or in the status "failed".
 
     Args:
         plant: W >= 0, V > 0, [[W, N], [N', V]] >= 0, (A, C) detectable.
@@ -75,32 +105,114 @@ def solve_riccati(plant: Plant) -> RiccatiSolution:
     Example:
         >>> from derive.numeric.plant import example_plant
         >>> solution = solve_riccati(example_plant())
-        >>> solution.status, solution.residual < 1e-14
-        ('stabilising', True)
+        >>> solution.status, solution.residual < 1e-14, solution.relative_error < 1e-14
+        ('stabilising', True, True)
     """
     with np.errstate(all="ignore"):  # a method that leaves the numbers is not taken
-        solution = _solution(plant, slack=1.0)
-        return solution if solution.status != "failed" else _solution(plant, ROUNDED_SLACK)
+        whole = normal_form(plant)
+        if not all(np.isfinite(X).all() for X in (whole.A, whole.C, whole.W, whole.N)):
+            return _without_normal_form(plant)
+        first = _in_extended_precision(plant, whole, slack=1.0)
+        if first.status != "failed" or first.is_stable(plant):
+            return _checked(plant, whole, first)
+        second = _in_extended_precision(plant, whole, ROUNDED_SLACK)
+        return _checked(plant, whole, first if second.status == "failed" else second)
 
 
-def _solution(plant: Plant, slack: float) -> RiccatiSolution:
-    whole = normal_form(plant)
+def _checked(plant: Plant, whole: NormalForm, solution: RiccatiSolution) -> RiccatiSolution:
+    """Return a solution that is accurate, or what high precision makes of it."""
+    if solution.status == "strong" or solution.relative_error <= INACCURATE or plant.n > LARGEST:
+        return solution
+    return _in_high_precision(plant, whole, solution)
+
+
+def _in_extended_precision(plant: Plant, whole: NormalForm, slack: float) -> RiccatiSolution:
     boundary = whole.boundary(slack)
-    part, strong = whole.without(boundary), len(boundary.modes) > 0
-    P, steps = _solved(part)
-    modes = np.linalg.eigvals(_closed_loop(part, P)) if np.isfinite(P).all() else np.full(len(P), np.nan)
-    P = boundary.kept @ P @ boundary.kept.T if strong else P
-    residual = _residual(whole, P)[1]
-    reached = residual < FAILED and bool(np.all(distance_to_stability(modes, plant.time) < 0))
-    P = whole.unscaled(P)
-    return RiccatiSolution(
+    part = whole.without(boundary)
+    found = best_candidate(part)
+    sense = sensitivity(part, found, _correlation(plant))
+    U = boundary.kept if len(boundary.modes) else np.eye(len(part.A))
+    P = U @ found.P @ U.T
+    residual = Candidate.of(whole, P).residual
+    modes = np.linalg.eigvals(found.closed_loop) if found.finite else np.full(len(part.A), np.nan)
+    modes = np.concatenate([modes.astype(complex), boundary.modes])
+    covariance = whole.unscaled(P)
+    solution = RiccatiSolution(
+        P=covariance.astype(float),
+        gain=_plant_gain(plant, covariance).astype(float),
+        closed_loop=modes,
+        residual=residual,
+        status="strong" if len(boundary.modes) else "stabilising",
+        error=_entries(U @ sense.error @ U.T, whole) + _rounding(covariance),
+        condition=sense.condition,
+        near_boundary=_near(modes, whole),
+        boundary_modes=boundary.modes,
+        newton_steps=found.steps,
+    )
+    return solution if found.is_stable(part) and residual < FAILED and sense.doubt < 1 else _failed(solution)
+
+
+def _in_high_precision(plant: Plant, whole: NormalForm, start: RiccatiSolution) -> RiccatiSolution:
+    """Return the solution with a proved error, or the start, failed."""
+    from derive.numeric.balls import exact, floats, norm, working_bits
+    from derive.numeric.high_precision import closed_ball
+
+    closed = closed_ball(plant, start.P if start.is_stable(plant) else None, DIGITS)
+    if closed.proof.radius is None:
+        return _failed(start)
+    with working_bits(closed.bits):
+        scaled = floats(closed.P) + floats(closed.P - exact(floats(closed.P))).astype(np.longdouble)
+        loop = floats(closed.equation.closed_loop(closed.P))
+        radius, residual = (
+            float(x.abs_upper()) for x in (closed.proof.radius, norm(closed.equation.residual(closed.P)))
+        )
+    P, found = whole.unscaled(scaled), Candidate.of(whole, scaled)
+    modes = np.linalg.eigvals(loop).astype(complex)
+    return replace(
+        start,
         P=P.astype(float),
         gain=_plant_gain(plant, P).astype(float),
-        closed_loop=np.concatenate([modes.astype(complex), boundary.modes]),
-        residual=residual,
-        status=("strong" if strong else "stabilising") if reached else "failed",
-        boundary_modes=boundary.modes,
-        newton_steps=steps,
+        closed_loop=modes,
+        residual=residual / found.size if residual else 0.0,
+        status="stabilising",
+        reason="",
+        error=_entries(radius * np.eye(plant.n), whole) + _rounding(P),
+        condition=sensitivity(whole, found, _correlation(plant)).condition,
+        near_boundary=_near(modes, whole),
+        boundary_modes=np.zeros(0, complex),
+    )
+
+
+def _failed(solution: RiccatiSolution) -> RiccatiSolution:
+    """Return the solution with its status and the reason why it is none."""
+    modes = ", ".join(dict.fromkeys(map(format_mode, solution.near_boundary)))
+    reason = "closed loop: expected stable, found no gain that makes it so; is (A, C) detectable?"
+    if modes:
+        reason = f"closed loop: expected stable, got {modes} on the boundary or too near to tell"
+    return replace(
+        solution,
+        status="failed",
+        reason=reason,
+        error=np.full(solution.P.shape, np.inf),
+        condition=np.inf,
+        boundary_modes=np.zeros(0, complex),
+    )
+
+
+def _without_normal_form(plant: Plant) -> RiccatiSolution:
+    n, l = plant.n, plant.l  # noqa: E741
+    return RiccatiSolution(
+        P=np.full((n, n), np.nan),
+        gain=np.full((n, l), np.nan),
+        closed_loop=np.full(n, np.nan + 0j),
+        residual=np.inf,
+        status="failed",
+        reason="V: expected positive definite beyond rounding, got a singular or indefinite matrix",
+        error=np.full((n, n), np.inf),
+        condition=np.inf,
+        near_boundary=np.zeros(0, complex),
+        boundary_modes=np.zeros(0, complex),
+        newton_steps=0,
     )
 
 
@@ -111,93 +223,24 @@ def _plant_gain(plant: Plant, P: Matrix) -> Matrix:
     return divided(plant.A @ PC + plant.N, plant.C @ PC + plant.V)
 
 
-def _gain(form: NormalForm, P: Matrix) -> Matrix:
-    """Return P C' + N, in discrete time (A P C' + N) (C P C' + I)^-1, in the precision of P."""
-    PC = P @ form.C.T
-    if form.time == "continuous":
-        return PC + form.N
-    return divided(form.A @ PC + form.N, form.C @ PC + np.eye(len(form.C)))
+def _correlation(plant: Plant) -> float:
+    """Return the condition number of the measurement noise's correlation matrix."""
+    size = np.sqrt(np.diag(plant.V))
+    return float(np.linalg.cond(plant.V / np.outer(size, size)))
 
 
-def _closed_loop(form: NormalForm, P: Matrix) -> Matrix:
-    """Return A - L C in double precision."""
-    return (form.A - _gain(form, P) @ form.C).astype(float)
+def _entries(E: Matrix, form: NormalForm) -> Matrix:
+    """Return the bounds sqrt(E_ii E_jj) of the entries of every D with -E <= D <= E, in the plant's states."""
+    deviations = np.sqrt(np.maximum(np.diag(E), 0.0)) * form.scaling.astype(float)
+    return np.outer(deviations, deviations)
 
 
-def _residual(form: NormalForm, P: Matrix) -> tuple[Matrix, float]:
-    """Return the left-hand side of the equation at P, and its size relative to that of its terms."""
-    L = _gain(form, P)
-    if form.time == "continuous":
-        terms = (form.A @ P, P @ form.A.T, form.W, -L @ L.T)
-    else:
-        terms = (form.A @ P @ form.A.T, -P, form.W, -L @ (form.C @ P @ form.A.T + form.N.T))
-    value = np.sum(terms, axis=0)
-    size = sum(_norm(term) for term in terms)
-    return (value + value.T) / 2, _norm(value) / size if size else 0.0
+def _rounding(P: Matrix) -> Matrix:
+    """Return what rounding to doubles does to the entries."""
+    return float(np.finfo(float).eps) * np.abs(P.astype(float))
 
 
-def _solved(form: NormalForm) -> tuple[Matrix, int]:
-    """Return the best of what the methods find, refined, and the number of Newton steps that it took."""
-    n = len(form.A)
-    best, steps, error = np.full((n, n), np.nan), 0, np.inf
-    if n == 0:
-        return best, steps
-    for method in (_scipy, _kleinman):
-        P, taken = _refined(form, method(form))
-        found = _residual(form, P)[1] if _stable(form, P) else np.inf
-        if found < error:
-            best, steps, error = P, taken, found
-        if error <= ACCURATE:
-            break
-    return best, steps
-
-
-def _scipy(form: NormalForm) -> Matrix:
-    from scipy.linalg import solve_continuous_are, solve_discrete_are
-
-    F, C, W = form.uncorrelated()
-    solve = solve_continuous_are if form.time == "continuous" else solve_discrete_are
-    try:
-        return solve(F.T, C.T, W, np.eye(len(C)))
-    except (np.linalg.LinAlgError, ValueError):
-        return np.full(F.shape, np.nan)
-
-
-def _refined(form: NormalForm, P: Matrix) -> tuple[Matrix, int]:
-    """Take Newton steps P <- P + D, (F - L C) D + D (F - L C)' + residual = 0, while the residual falls, and stably."""
-    P = P.astype(np.longdouble)
-    for step in range(NEWTON_STEPS):
-        value, error = _residual(form, P)
-        if not _stable(form, P) or error == 0.0:
-            return P, step
-        better = P + solve_lyapunov(_closed_loop(form, P), value.astype(float), form.time)
-        if not (_residual(form, better)[1] < error and _stable(form, better)):
-            return P, step
-        P = better
-    return P, NEWTON_STEPS
-
-
-def _stable(form: NormalForm, P: Matrix) -> bool:
-    loop = _closed_loop(form, P)
-    return bool(np.isfinite(loop).all() and np.all(distance_to_stability(np.linalg.eigvals(loop), form.time) < 0))
-
-
-def _kleinman(form: NormalForm) -> Matrix:
-    """Return the limit of P = covariance of K, K = optimal gain for P: from a stabilising start P falls steadily."""
-    F, C, W = form.uncorrelated()
-    K, P = stabilising_gain(F, C, form.time), np.full(F.shape, np.nan)
-    best = np.inf
-    for _ in range(KLEINMAN_STEPS):
-        if not np.isfinite(K).all() or np.any(distance_to_stability(np.linalg.eigvals(F - K @ C), form.time) >= 0):
-            break
-        better = error_covariance(F, C, W, np.eye(len(C)), np.zeros_like(K), K, form.time)
-        if not np.trace(better) < best:
-            break
-        P, best = better, np.trace(better)
-        K = (_gain(form, P) - form.N).astype(float)
-    return P
-
-
-def _norm(X: Matrix) -> float:
-    """Return the Frobenius norm."""
-    return float(np.linalg.norm(X.astype(float)))
+def _near(modes: Modes, form: NormalForm) -> Modes:
+    """Return the modes on the boundary of stability or near to it."""
+    size = spectral_scale(form.A.astype(float), form.time)
+    return modes[np.abs(distance_to_stability(modes, form.time)) <= NEAR_RTOL * size]

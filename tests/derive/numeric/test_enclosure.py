@@ -111,8 +111,7 @@ def test_a_closed_loop_on_the_boundary_is_named():
                   W=-np.array([[11.0, 5.0], [5.0, 2.0]]), V=np.eye(1), N=np.zeros((2, 1)), M=np.eye(2))  # fmt: skip
     enclosure = enclose_riccati(plant)
     assert (enclosure.status, enclosure.P) == ("boundary", None)
-    assert "the slowest mode of the closed loop is about" in enclosure.reason
-    assert "1j" in enclosure.reason
+    assert "1j on the boundary or too near to tell" in enclosure.reason
 
 
 @pytest.mark.parametrize("noise", [1e-12, 1e-24])

@@ -185,7 +185,7 @@ def test_a_long_chain_of_integrators():
 
 
 def test_stable_modes_without_noise_are_no_boundary():
-    split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0, 1.0)
+    split = unexcited_boundary(np.diag([-1.0, 0.0]), np.diag([0.0, 1.0]), "continuous", 1.0, np.eye(2))
     assert (len(split.modes), split.kept.shape, split.removed.shape) == (0, (2, 2), (2, 0))
 
 
