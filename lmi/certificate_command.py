@@ -1,33 +1,80 @@
 """What `lmi certify FILE` does: read, decide, report. No number of the file but its matrices is used."""
 
-from lmi.certificate import exact_plant, verify
+from collections.abc import Mapping
+from fractions import Fraction
+
+from derive.errors import InputError
+from lmi.certificate import Certificate, exact_plant, verify
 from lmi.certificate_arithmetic import TooLargeError
-from lmi.certificate_file import read_certificate
+from lmi.certificate_design import verify_design
+from lmi.certificate_design_file import DESIGN, DUAL_MATRICES, Design, design_from_dict
+from lmi.certificate_design_report import design_lines, unproved
+from lmi.certificate_file import MATRICES, certificate_from_dict, read_json
 from lmi.certificate_report import proved_lines, rejected_line
 
 __all__ = ["certify_file"]
 
+Outcome = tuple[list[str], int]
 
-def certify_file(path: str, plant_path: str | None) -> tuple[list[str], int]:
-    """Verify a certificate, and that it is about a plant if one is given.
+DUAL_NAMES: dict[str, str] = dict(zip(MATRICES, DUAL_MATRICES, strict=True))
+
+
+def certify_file(path: str, plant_path: str | None) -> Outcome:
+    """Verify a certificate or a design, and that it is about a plant if one is given.
 
     Returns:
         Lines to print, and 0, 1 or 3 for the command line.
 
     Raises:
-        InputError: the file is no certificate, or the plant none.
+        InputError: the file is neither, or the plant none.
     """
-    certificate = read_certificate(path)
-    if plant_path is not None:
-        from derive.numeric.plant import load_plant
-
-        difference = certificate.plant.differs_in(exact_plant(load_plant(plant_path)))
-        if difference:
-            return [f"rejected: made for another plant: {difference} differs"], 1
+    data = read_json(path)
+    is_design = isinstance(data, Mapping) and data.get("schema") == DESIGN
     try:
-        found, bounds = verify(certificate)
+        read = design_from_dict(data) if is_design else certificate_from_dict(data)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    difference = _difference(read, plant_path)
+    if difference:
+        return [f"rejected: made for another plant: {difference} differs"], 1
+    try:
+        return _decide_design(read) if isinstance(read, Design) else _decide(read)
     except TooLargeError as error:
         return [f"not certified: {error}"], 3
+
+
+def _difference(read: Design | Certificate, path: str | None) -> str:
+    """Return the first key in which the plant differs from that of a file, or nothing."""
+    if path is None:
+        return ""
+    if isinstance(read, Certificate):
+        from derive.numeric.plant import load_plant
+
+        return read.plant.differs_in(exact_plant(load_plant(path)))
+    return _design_difference(read, path)
+
+
+def _design_difference(design: Design, path: str) -> str:
+    from derive.numeric.dual import load_dual
+    from derive.numeric.plant import load_plant
+
+    plant = load_dual(path) if design.dual else load_plant(path)
+    key = design.certificate.plant.differs_in(exact_plant(plant))
+    if not key and Fraction(plant.dt or 1) != design.period:
+        return "dt"
+    return DUAL_NAMES.get(key, key) if design.dual else key
+
+
+def _decide(certificate: Certificate) -> Outcome:
+    found, bounds = verify(certificate)
+    return ([rejected_line(found)], 1) if bounds is None else ([*proved_lines(certificate, bounds), "certified"], 0)
+
+
+def _decide_design(design: Design) -> Outcome:
+    found, bounds = verify_design(design.certificate)
     if bounds is None:
         return [rejected_line(found)], 1
-    return [*proved_lines(certificate, bounds), "certified"], 0
+    missing = unproved(design, bounds)
+    if missing:
+        return [f"rejected: {line}" for line in missing], 1
+    return [*design_lines(design, bounds), "certified"], 0

@@ -7,7 +7,7 @@ from math import ceil, floor, log10
 
 from lmi.certificate import Bounds, Certificate, Check, Interval
 
-__all__ = ["above", "at_least", "at_most", "ends", "proved_lines", "rejected_line"]
+__all__ = ["above", "at_least", "at_most", "ends", "excess_line", "proved_lines", "rejected_line"]
 
 DIGITS = 32
 """Most significant digits printed."""
@@ -34,10 +34,11 @@ def proved_lines(certificate: Certificate, bounds: Bounds) -> Iterator[str]:
     for name, interval in named:
         lower, upper = ends(interval)
         yield f"{name:8}{lower:36}{upper}"
-    yield _excess(bounds.cost)
+    yield excess_line(bounds.cost)
 
 
-def _excess(cost: Interval) -> str:
+def excess_line(cost: Interval) -> str:
+    """Return the line that says by how much the gain's cost exceeds the least possible."""
     absolute = f"the cost tr MP of this gain exceeds the least possible by at most {at_most(cost.width, 3)}"
     return f"{absolute}, relative {at_most(cost.width / cost.lower, 3)}" if cost.lower > 0 else absolute
 
