@@ -5,22 +5,24 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
+import cvxpy as cp
 import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.plant import Plant
+from lmi.central_path import rough_covariance
 from lmi.programs.optimal_covariance import optimal_covariance
 from lmi.programs.program import Program
 from lmi.residual import newton_error, riccati_residual
 from lmi.scaling import Scaling, balanced, recentred, scaled_plant
-from lmi.solve import TO_THE_LAST_DIGIT, Accuracy, Outcome, Status, solve_program
+from lmi.solve import FALLBACKS, TO_THE_LAST_DIGIT, Accuracy, Outcome, Status, solve_program
 
 __all__ = ["Solution", "covariance_error", "solve_covariance"]
 
 Matrix = NDArray[np.floating[Any]]
 
-GOOD = 1e-8
-"""Relative error below which no further attempt is made to improve an answer."""
+TRUSTED = 1e-7
+"""Relative error above which the fallback solvers are asked."""
 
 ROUGH = 0.5
 """Relative error below which an answer is good enough to choose better coordinates by."""
@@ -29,7 +31,7 @@ ROUGHLY = Accuracy(1e-6, 1e-7)
 """Enough to choose coordinates by."""
 
 ATTEMPTS = (TO_THE_LAST_DIGIT, Accuracy(1e-12, 1e-7), Accuracy(1e-9, 1e-6))
-"""Tried in this order until an answer is `GOOD`: to the last digit, then sturdier."""
+"""Of Clarabel, in this order until an answer is as good as its program can be: to the last digit, then sturdier."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +44,7 @@ class Solution:
         gain: observer gain (n, l), or None.
         error: what P lacks (n, n), estimated by Newton steps, or None when P belongs to no stabilising gain.
         residual: of the Riccati equation at P, relative, in the coordinates of the solver.
-        attempts: calls of the solver in the coordinates chosen.
+        tried: the calls of solvers in the coordinates chosen, by solver and by what became of each.
         seconds: in all.
     """
 
@@ -51,7 +53,7 @@ class Solution:
     gain: Matrix | None
     error: Matrix | None
     residual: float
-    attempts: int
+    tried: tuple[tuple[str, Status], ...]
     seconds: float
 
 
@@ -78,9 +80,11 @@ class _Answer:
 def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solution:
     """Solve a program for a plant's optimal error covariance, in coordinates that suit it.
 
-    The plant is balanced; a rough answer of the cheapest program gives coordinates in which the covariance is near the
-    identity; there the program is solved, and again with sturdier settings if need be. The answer with the smallest
-    estimated error is returned. The Riccati equation is solved nowhere; it only judges.
+    The plant is balanced, and a rough covariance from Lyapunov equations gives coordinates in which the optimal one is
+    near the identity; where no stabilising gain is found that way, a rough answer of the cheapest program does. There
+    the program is solved; if its answer is not yet as good as its form can be, again in the coordinates of that answer
+    and with sturdier settings, then by other solvers (`lmi.solve.FALLBACKS`). The answer with the smallest estimated
+    error is returned. The Riccati equation is solved nowhere; it only judges.
 
     Args:
         plant: V > 0, (A, C) detectable.
@@ -97,18 +101,65 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
         ('solved', True)
     """
     start = perf_counter()
-    common = balanced(plant)
-    coordinates = _coordinates(plant, common)
-    best: _Answer | None = None
-    outcome, attempts = Outcome(Status.FAILED, "not called"), 0
-    for accuracy in ATTEMPTS:
-        attempts += 1
-        outcome, answer = _attempt(plant, build, accuracy, coordinates, common)
-        if answer is not None and (best is None or answer.distance < best.distance):
-            best = answer
-        if best is not None and best.distance <= GOOD * best.size:
-            break
-    return _solution(best, outcome, attempts, perf_counter() - start)
+    search = _Search(plant, build, balanced(plant))
+    search.run()
+    return search.solution(perf_counter() - start)
+
+
+class _Search:
+    """Calls of solvers for one plant and one program, compiled once, and the best answer so far."""
+
+    def __init__(self, plant: Plant, build: Callable[[Plant], Program], common: Scaling):
+        self.plant, self.build, self.common = plant, build, common
+        self.program: Program | None = None
+        self.best: _Answer | None = None
+        self.last = Outcome(Status.FAILED, "not called")
+        self.tried: list[tuple[str, Status]] = []
+
+    def run(self) -> None:
+        """Try solvers and coordinates until the answer is good, or there is nothing left to try."""
+        coordinates = _coordinates(self.plant, self.common)
+        for accuracy in ATTEMPTS:
+            self.call(accuracy, coordinates)
+            if self.program is not None and self.reached(self.program.attainable):
+                return
+            coordinates = self.improved(coordinates)
+        for solver in FALLBACKS:
+            if self.reached(TRUSTED):
+                return
+            if solver in cp.installed_solvers():
+                self.call(ATTEMPTS[-1], coordinates, solver)
+
+    def call(self, accuracy: Accuracy, scaling: Scaling, solver: str = cp.CLARABEL) -> None:
+        """Call a solver once and keep its answer if it is the best so far."""
+        scaled = scaled_plant(self.plant, scaling)
+        if self.program is None or not self.program.load(scaled):
+            self.program = self.build(scaled)
+        self.last, answer = _called(self.program, scaled, accuracy, (scaling, self.common), solver)
+        self.tried.append((solver, self.last.status))
+        if answer is not None and (self.best is None or answer.distance < self.best.distance):
+            self.best = answer
+
+    def reached(self, tolerance: float) -> bool:
+        """Tell whether the best answer's estimated error is at most a relative tolerance."""
+        return self.best is not None and self.best.distance <= tolerance * self.best.size
+
+    def improved(self, coordinates: Scaling) -> Scaling:
+        """Return coordinates in which the best answer so far is the identity, if it is good enough for that."""
+        if self.best is None or not self.reached(ROUGH):
+            return coordinates
+        P = self.common.scaled_covariance(self.best.scaling.covariance(self.best.P))
+        return recentred(self.plant, self.common, P, self.best.distance)
+
+    def solution(self, seconds: float) -> Solution:
+        """Return the best answer in the plant's units."""
+        best, tried = self.best, tuple(self.tried)
+        if best is None:
+            return Solution(self.last, None, None, None, np.inf, tried, seconds)
+        scaling = best.scaling
+        error = None if best.error is None else scaling.covariance(best.error)
+        P, gain = scaling.covariance(best.P), scaling.gain(best.gain)
+        return Solution(best.outcome, P, gain, error, best.residual, tried, seconds)
 
 
 def covariance_error(plant: Plant, P: Matrix) -> Matrix | None:
@@ -120,43 +171,34 @@ def covariance_error(plant: Plant, P: Matrix) -> Matrix | None:
 
 
 def _coordinates(plant: Plant, common: Scaling) -> Scaling:
-    """Return coordinates in which a rough largest covariance is the identity, or the balanced ones if that failed."""
-    _, rough = _attempt(plant, optimal_covariance, ROUGHLY, common, common)
-    if rough is None or rough.distance > ROUGH * rough.size:
+    """Return coordinates in which a rough covariance is the identity, or the balanced ones if there is none."""
+    rough = rough_covariance(plant)
+    if rough is not None:
+        return recentred(plant, common, common.scaled_covariance(rough), 0.0)
+    scaled = scaled_plant(plant, common)
+    _, answer = _called(optimal_covariance(scaled), scaled, ROUGHLY, (common, common), cp.CLARABEL)
+    if answer is None or answer.distance > ROUGH * answer.size:
         return common
-    return recentred(plant, common, rough.P, rough.distance)
+    return recentred(plant, common, answer.P, answer.distance)
 
 
-def _attempt(
-    plant: Plant, build: Callable[[Plant], Program], accuracy: Accuracy, scaling: Scaling, common: Scaling
+def _called(
+    program: Program, scaled: Plant, accuracy: Accuracy, scalings: tuple[Scaling, Scaling], solver: str
 ) -> tuple[Outcome, _Answer | None]:
-    """Solve once in given coordinates; the answer is None when the solver left no numbers, or X is singular."""
-    scaled = scaled_plant(plant, scaling)
-    program = build(scaled)
-    outcome = solve_program(program, accuracy)
-    if outcome.status not in (Status.SOLVED, Status.INACCURATE):
+    """Solve once, the plant scaled by the first of two scalings; errors are measured in the second.
+
+    The answer is None when the solver left no numbers, or X is singular.
+    """
+    outcome = solve_program(program, accuracy, solver)
+    if outcome.optimality is None:
         return outcome, None
     try:
         P, gain = program.answer()
     except np.linalg.LinAlgError:
         return outcome, None
+    scaling, common = scalings
     error = newton_error(scaled, P)
     back = np.linalg.solve(common.T, scaling.T)
     distance = np.inf if error is None else float(np.linalg.norm(back @ error @ back.T))
     size = float(np.linalg.norm(back @ P @ back.T))
     return outcome, _Answer(outcome, scaling, P, gain, error, riccati_residual(scaled, P), distance, size)
-
-
-def _solution(best: _Answer | None, last: Outcome, attempts: int, seconds: float) -> Solution:
-    if best is None:
-        return Solution(last, None, None, None, np.inf, attempts, seconds)
-    scaling = best.scaling
-    return Solution(
-        outcome=best.outcome,
-        P=scaling.covariance(best.P),
-        gain=scaling.gain(best.gain),
-        error=None if best.error is None else scaling.covariance(best.error),
-        residual=best.residual,
-        attempts=attempts,
-        seconds=seconds,
-    )

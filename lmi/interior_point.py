@@ -6,12 +6,8 @@
 with J = [[W, N], [N', V]], U = [A; C], E = [I; 0] and F* the adjoint of the linear part. A general solver forms the
 matrix of its normal equations from n (n + 1)/2 constraint matrices of size n + l, here four Kronecker products suffice.
 
-The method starts on the central path F(P) = mu Z^-1, which is known in closed form up to a Riccati and a Lyapunov
-equation: with a gain L, Z = [I, -L]' X [I, -L] + mu blkdiag(0, G^-1), where
-    continuous: (A - L C)'X + X (A - L C) + M = 0,  G = V,             P solves the Riccati equation of W - mu X^-1
-    discrete:   (A - L C)'X (A - L C) - X + mu C'G^-1 C + M = 0,  G = V + C P C',  likewise.
-Its coordinates and its start therefore use the answer of the Riccati equation, so that it does not confirm that route;
-what it converges to is certified by its own residuals and gap.
+Coordinates and start are those of `lmi.central_path`, from Lyapunov equations alone: no Riccati equation is solved on
+the way, and what the method converges to is judged by its own residuals and gap.
 
 Source: C. Helmberg, F. Rendl, R. Vanderbei, H. Wolkowicz, An interior-point method for semidefinite programming, SIAM
 J. Optim. 6(2), 1996 (the direction); S. Mehrotra, On the implementation of a primal-dual interior point method, SIAM
@@ -20,15 +16,15 @@ J. Optim. 2(4), 1992 (predictor and corrector).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.numeric.lyapunov import solve_lyapunov
 from derive.numeric.plant import Plant
+from lmi.central_path import central_point, rough_covariance
+from lmi.residual import optimal_gain
 from lmi.scaling import balanced, recentred, scaled_plant
 
 __all__ = ["InteriorPoint", "solve_interior_point"]
@@ -42,11 +38,7 @@ SOLVED = 1e-10
 """Relative gap and residuals below which the answer counts as solved."""
 
 STEPS = 40
-START = 0.1
-"""mu (n + l) / tr(M P) at the start."""
-
-CENTRED = 0.05
-"""Relative change of X at which the start counts as central."""
+"""Steps after which the method gives up; it takes about ten."""
 
 SHORT = 0.3
 """Length of a predictor step below which the next one stays away from the boundary."""
@@ -84,23 +76,24 @@ def solve_interior_point(plant: Plant) -> InteriorPoint:
         >>> found.status, found.merit < 1e-12
         ('solved', True)
     """
-    from derive.numeric.riccati import solve_riccati
-
-    known = solve_riccati(plant)
-    if known.status != "stabilising":
-        return InteriorPoint("failed: no stabilising solution, so that the path has no end", None, None, np.inf, ())
+    rough = rough_covariance(plant)
+    if rough is None:
+        return _failed("no start: no stabilising gain, or an unexcited boundary mode, at which the path has no end")
     common = balanced(plant)
-    scaling = recentred(plant, common, common.scaled_covariance(known.P), 0.0)
+    scaling = recentred(plant, common, common.scaled_covariance(rough), 0.0)
     scaled = scaled_plant(plant, scaling)
     try:
-        start = _central_point(scaled, scaling.scaled_covariance(known.P))
-        P, history = _follow(_Cone.of(scaled), *start)
+        P, history = _follow(_Cone.of(scaled), *central_point(scaled, scaling.scaled_covariance(rough)))
     except np.linalg.LinAlgError as error:
-        return InteriorPoint(f"failed: {error}", None, None, np.inf, ())
+        return _failed(str(error))
     merit = min(history)
-    status = "solved" if merit < SOLVED else "inaccurate"
-    gain = scaling.gain(_gain(scaled, P)[0])
+    status = "solved" if merit < SOLVED else "inaccurate: the path was not followed to its end"
+    gain = scaling.gain(optimal_gain(scaled, P))
     return InteriorPoint(status, scaling.covariance(P), gain, merit, tuple(history))
+
+
+def _failed(reason: str) -> InteriorPoint:
+    return InteriorPoint(f"failed: {reason}", None, None, np.inf, ())
 
 
 # ------------------------------------------------------------------------------------------------ the cone
@@ -171,63 +164,6 @@ def _packed_products(lefts: Matrix, rights: Matrix) -> Matrix:
 
 def _symmetric(X: Matrix) -> Matrix:
     return (X + X.T) / 2
-
-
-# ------------------------------------------------------------------------------------------------ the start
-def _central_point(plant: Plant, P: Matrix) -> tuple[Matrix, Matrix]:
-    """Return P, Z near the central path, both strictly feasible up to rounding."""
-    from scipy.linalg import solve_continuous_are, solve_discrete_are
-
-    solver = solve_continuous_are if plant.is_continuous else solve_discrete_are
-    mu = START * float(np.trace(P)) / (plant.n + plant.l)
-    X = _adjoint_solution(plant, P, 0.0)
-    found: Matrix | None = None
-    for _ in range(STEPS):
-        noise = _symmetric(plant.W - mu * np.linalg.inv(X))
-        candidate = _solved(solver, plant, noise)
-        if candidate is None:
-            if found is not None:
-                break
-            mu *= SHORT
-            continue
-        found = candidate
-        before, X = X, _adjoint_solution(plant, found, mu)
-        if np.linalg.norm(X - before) < CENTRED * np.linalg.norm(X):
-            break
-    if found is None:
-        raise np.linalg.LinAlgError("no point on the central path was found")
-    L, G = _gain(plant, found)
-    gap = np.vstack([np.eye(plant.n), -L.T])
-    Z = gap @ X @ gap.T
-    Z[plant.n :, plant.n :] += mu * np.linalg.inv(G)
-    return found, _symmetric(Z)
-
-
-def _solved(solver: Callable[..., Any], plant: Plant, noise: Matrix) -> Matrix | None:
-    """Return the stabilising solution of the Riccati equation with other process noise, or None."""
-    try:
-        P = _symmetric(solver(plant.A.T, plant.C.T, noise, plant.V, s=plant.N))
-    except (np.linalg.LinAlgError, ValueError):
-        return None
-    modes = np.linalg.eigvals(plant.A - _gain(plant, P)[0] @ plant.C)
-    stable = modes.real.max() < 0 if plant.is_continuous else np.abs(modes).max() < 1
-    return P if stable else None
-
-
-def _gain(plant: Plant, P: Matrix) -> tuple[Matrix, Matrix]:
-    """Return the optimal gain L (n, l) for P, and G = V, in discrete time V + C P C'."""
-    PC = P @ plant.C.T
-    top, G = (PC, plant.V) if plant.is_continuous else (plant.A @ PC, plant.V + plant.C @ PC)
-    return np.linalg.solve(G, (top + plant.N).T).T, G
-
-
-def _adjoint_solution(plant: Plant, P: Matrix, mu: float) -> Matrix:
-    """Return X of the adjoint Lyapunov equation of A - L C, L the gain for P."""
-    L, G = _gain(plant, P)
-    forcing = np.eye(plant.n)
-    if not plant.is_continuous:
-        forcing = forcing + mu * plant.C.T @ np.linalg.solve(G, plant.C)
-    return _symmetric(solve_lyapunov((plant.A - L @ plant.C).T, forcing, plant.time))
 
 
 # ------------------------------------------------------------------------------------------------ the path

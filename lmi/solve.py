@@ -1,13 +1,14 @@
 """The one place that calls a conic solver, and that judges what it returns.
 
 A solver's "optimal" is a claim. Every answer is judged by what can be recomputed from the numbers returned: the
-eigenvalues of the matrices that should be positive semidefinite, and the equations that should hold.
+eigenvalues of the matrices that should be positive semidefinite, the equations that should hold, and the gap between
+the primal and the dual value.
 """
 
 import os
 import shutil
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import Enum
@@ -17,12 +18,17 @@ from typing import Any
 import cvxpy as cp
 import numpy as np
 
+from lmi.optimality import Optimality, optimality
 from lmi.programs.program import Program
 
-__all__ = ["TO_THE_LAST_DIGIT", "Accuracy", "Outcome", "Status", "solve_program"]
+__all__ = ["FALLBACKS", "TO_THE_LAST_DIGIT", "Accuracy", "Outcome", "Status", "solve_program"]
 
 FEASIBLE = 1e-6
-"""A matrix is positive semidefinite, or an equation holds, when it fails by less than this, relative to its size."""
+"""A condition of optimality holds when it fails by less than this, relative to its size."""
+
+FALLBACKS = ("CVXOPT", "SCS")
+"""Solvers to try, in this order and where they are installed, when Clarabel's answer is not good enough. CVXOPT is an
+interior-point method as well, which breaks off on badly scaled programs; SCS is of first order and only ever rough."""
 
 STANDARD_ERROR = 2
 """Its file descriptor, by which compiled code writes."""
@@ -38,6 +44,7 @@ class Status(Enum):
     INACCURATE = "inaccurate: the numbers returned do not solve the program"
     INFEASIBLE = "infeasible: no numbers satisfy the constraints"
     UNBOUNDED = "unbounded: the objective has no limit"
+    ROUGH = "rough: the solver is of first order, its digits are not to be trusted"
     STOPPED = "stopped: limit of time or iterations reached"
     FAILED = "failed: the solver returned no numbers"
 
@@ -63,27 +70,51 @@ class Outcome:
     """One call of the solver, judged by its numbers.
 
     Attributes:
-        status: SOLVED only when the numbers satisfy every constraint to `FEASIBLE`.
+        status: SOLVED only when the numbers satisfy every condition of optimality to `FEASIBLE`.
         raw_status: the solver's own word.
-        margin: smallest eigenvalue of a matrix that should be >= 0, relative to its norm; negative when it fails.
-        violation: largest entry by which an equation fails, relative to the largest entry of a variable (at least 1).
-        iterations: of the interior-point method.
+        optimality: the conditions of optimality recomputed, or None when there are no numbers.
+        iterations: of the solver.
+        solver: its name.
     """
 
     status: Status
     raw_status: str
-    margin: float = -np.inf
-    violation: float = np.inf
+    optimality: Optimality | None = None
     iterations: int = 0
+    solver: str = cp.CLARABEL
 
 
-def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT) -> Outcome:
+def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT, solver: str = cp.CLARABEL) -> Outcome:
     """Call the solver once and judge the numbers that it leaves in the program's variables.
 
     Clarabel's chordal decomposition is off: the programs are dense, and it would only add a transformation to trust.
     CVXPY's warnings are kept from the user; the outcome says what they would.
+
+    Args:
+        program: its parameters set.
+        accuracy: what is asked of the solver, where it can be asked.
+        solver: CLARABEL, or one of `FALLBACKS`.
     """
-    options: dict[str, Any] = {
+    problem = program.problem
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            with _panics_as_errors():
+                problem.solve(solver=solver, **_OPTIONS[solver](accuracy))
+        except cp.SolverError as error:
+            return Outcome(Status.FAILED, str(error).split(".")[0], solver=solver)
+        except _BREAKDOWNS as error:
+            if solver == cp.CLARABEL:
+                raise
+            return Outcome(Status.FAILED, f"{type(error).__name__}: {error}", solver=solver)
+        return _judged(problem, solver)
+
+
+_BREAKDOWNS = (ArithmeticError, ValueError, TypeError)
+"""What CVXOPT raises when its numbers run out."""
+
+_OPTIONS: dict[str, Callable[[Accuracy], dict[str, Any]]] = {
+    "CLARABEL": lambda accuracy: {
         "tol_gap_abs": accuracy.tolerance,
         "tol_gap_rel": accuracy.tolerance,
         "tol_feas": accuracy.tolerance,
@@ -91,15 +122,20 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT) -> O
         "max_iter": 200,
         "time_limit": TIME_LIMIT,
         "chordal_decomposition_enable": False,
-    }
-    problem = program.problem
-    try:
-        with warnings.catch_warnings(), _panics_as_errors():
-            warnings.simplefilter("ignore")
-            problem.solve(solver=cp.CLARABEL, **options)
-    except cp.SolverError as error:
-        return Outcome(Status.FAILED, str(error).split(".")[0])
-    return _judged(problem)
+    },
+    "CVXOPT": lambda accuracy: {
+        "abstol": max(accuracy.tolerance, 1e-10),
+        "reltol": max(accuracy.tolerance, 1e-10),
+        "feastol": max(accuracy.tolerance, 1e-10),
+        "max_iters": 100,
+    },
+    "SCS": lambda accuracy: {
+        "eps_abs": max(accuracy.tolerance, 1e-7),
+        "eps_rel": max(accuracy.tolerance, 1e-7),
+        "max_iters": 20_000,
+        "time_limit_secs": TIME_LIMIT / 10,
+    },
+}
 
 
 @contextmanager
@@ -128,17 +164,27 @@ def _panics_as_errors() -> Iterator[None]:
                     shutil.copyfileobj(held, passed_on)
 
 
-def _judged(problem: cp.Problem) -> Outcome:
+def _judged(problem: cp.Problem, solver: str) -> Outcome:
     raw = str(problem.status)
     stats = problem.solver_stats
     iterations = int(stats.num_iters or 0) if stats is not None else 0
-    if raw in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
-        if not all(np.isfinite(np.asarray(variable.value, dtype=float)).all() for variable in problem.variables()):
-            return Outcome(Status.FAILED, raw, iterations=iterations)
-        margin, violation = _margin(problem), _violation(problem)
-        status = Status.SOLVED if margin >= -FEASIBLE and violation <= FEASIBLE else Status.INACCURATE
-        return Outcome(status, raw, margin, violation, iterations)
-    return Outcome(_UNSOLVED.get(raw, Status.FAILED), raw, iterations=iterations)
+    if raw not in (cp.OPTIMAL, cp.OPTIMAL_INACCURATE):
+        return Outcome(_UNSOLVED.get(raw, Status.FAILED), raw, None, iterations, solver)
+    if not all(np.isfinite(number).all() for number in _numbers(problem)):
+        return Outcome(Status.FAILED, raw, None, iterations, solver)
+    found = optimality(problem)
+    status = Status.SOLVED if found.holds(FEASIBLE) else Status.INACCURATE
+    if solver == cp.SCS and status is Status.SOLVED:
+        status = Status.ROUGH
+    return Outcome(status, raw, found, iterations, solver)
+
+
+def _numbers(problem: cp.Problem) -> Iterator[np.ndarray[Any, Any]]:
+    """Iterate over what the solver returned: variables and multipliers."""
+    for variable in problem.variables():
+        yield np.asarray(variable.value, dtype=float)
+    for constraint in problem.constraints:
+        yield np.asarray(constraint.dual_value, dtype=float)
 
 
 _UNSOLVED = {
@@ -148,17 +194,3 @@ _UNSOLVED = {
     cp.UNBOUNDED_INACCURATE: Status.UNBOUNDED,
     cp.USER_LIMIT: Status.STOPPED,
 }
-
-
-def _margin(problem: cp.Problem) -> float:
-    """Return the smallest relative eigenvalue of the matrices that should be positive semidefinite."""
-    matrices = [constraint.args[0].value for constraint in problem.constraints if isinstance(constraint, cp.PSD)]
-    values = [np.linalg.eigvalsh((matrix + matrix.T) / 2) for matrix in matrices]
-    return float(min((value[0] / max(np.abs(value).max(), 1e-300) for value in values), default=np.inf))
-
-
-def _violation(problem: cp.Problem) -> float:
-    """Return the largest entry by which an equation fails, relative to the largest entry of a variable (at least 1)."""
-    size = max(1.0, *(float(np.abs(np.asarray(variable.value)).max()) for variable in problem.variables()))
-    equations = [constraint for constraint in problem.constraints if not isinstance(constraint, cp.PSD)]
-    return float(max((np.max(equation.violation()) for equation in equations), default=0.0)) / size

@@ -24,7 +24,8 @@ import numpy as np
 
 from derive.numeric.plant import Plant
 from lmi.programs.observer import Unknowns, factor
-from lmi.programs.program import Matrix, Program
+from lmi.programs.optimal_covariance import joint_noise
+from lmi.programs.program import Matrix, Program, shape_of
 
 __all__ = ["cost_bound", "factor", "gramian", "h2"]
 
@@ -48,10 +49,24 @@ def h2(plant: Plant) -> Program:
         >>> bool(abs(program.answer()[1][0, 0] - 2.0) < 1e-6)
         True
     """
-    unknowns = Unknowns.of(plant)
-    cost, bound = cost_bound(unknowns, plant.M)
+    shape, sizes = shape_of(plant), (factor(joint_noise(plant)).shape, factor(plant.M).shape)
+    A, C = cp.Parameter(plant.A.shape, name="A"), cp.Parameter(plant.C.shape, name="C")
+    noise, E = (cp.Parameter(size, name=name) for size, name in zip(sizes, ("[G; H]", "E"), strict=True))
+    X = cp.Variable(plant.A.shape, symmetric=True, name="X")
+    Y = cp.Variable((plant.n, plant.l), name="Y")
+    unknowns = Unknowns(plant, X, Y, X @ A - Y @ C, X @ noise[: plant.n] - Y @ noise[plant.n :])
+    cost, bound = _factor_bound(X, E)
     problem = cp.Problem(cp.Minimize(cost), [*gramian(unknowns), *bound])
-    return Program("smallest H2 norm from noise to error", problem, unknowns.answer)
+
+    def load(plant: Plant) -> bool:
+        factors = factor(joint_noise(plant)), factor(plant.M)
+        if shape_of(plant) != shape or (factors[0].shape, factors[1].shape) != sizes:
+            return False
+        A.value, C.value, noise.value, E.value = plant.A, plant.C, *factors
+        return True
+
+    load(plant)
+    return Program("smallest H2 norm from noise to error", problem, unknowns.answer, load, attainable=1e-6)
 
 
 def gramian(unknowns: Unknowns) -> list[cp.Constraint]:
@@ -66,6 +81,10 @@ def gramian(unknowns: Unknowns) -> list[cp.Constraint]:
 
 def cost_bound(unknowns: Unknowns, weight: Matrix) -> tuple[cp.Expression, list[cp.Constraint]]:
     """Return tr(Z) and the constraint that makes it at least tr(M X^-1) for a weight M (n, n)."""
-    E = factor(weight)
+    return _factor_bound(unknowns.X, factor(weight))
+
+
+def _factor_bound(X: cp.Variable, E: Matrix | cp.Parameter) -> tuple[cp.Expression, list[cp.Constraint]]:
+    """Return tr(Z) and the constraint Z >= E' X^-1 E."""
     Z = cp.Variable((E.shape[1], E.shape[1]), symmetric=True, name="Z")
-    return cp.trace(Z), [cp.bmat([[Z, E.T], [E, unknowns.X]]) >> 0]
+    return cp.Expression.cast(cp.trace(Z)), [cp.bmat([[Z, E.T], [E, X]]) >> 0]

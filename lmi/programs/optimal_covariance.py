@@ -14,12 +14,13 @@ discrete-time systems, Linear Algebra Appl. 99, 1988, for detectable pairs and d
 """
 
 import cvxpy as cp
+import numpy as np
 
 from derive.numeric.plant import Plant
-from lmi.programs.program import Matrix, Program
-from lmi.residual import symmetric_part
+from lmi.programs.program import Matrix, Program, SymmetricMap, packed, shape_of, unpacked
+from lmi.residual import optimal_gain
 
-__all__ = ["optimal_covariance", "riccati_inequality"]
+__all__ = ["joint_noise", "optimal_covariance", "riccati_inequality", "riccati_map"]
 
 
 def optimal_covariance(plant: Plant) -> Program:
@@ -41,23 +42,47 @@ def optimal_covariance(plant: Plant) -> Program:
         >>> bool(abs(program.answer()[0][0, 0] - 2.0) < 1e-9)
         True
     """
-    from lmi.residual import optimal_gain
+    shape, n = shape_of(plant), plant.n
+    F = SymmetricMap(plant, riccati_map, "F")
+    J = cp.Parameter((n + plant.l,) * 2, symmetric=True, name="J")
+    weight = cp.Parameter(n * (n + 1) // 2, name="M")
+    P = cp.Variable(n * (n + 1) // 2, name="P")
+    problem = cp.Problem(cp.Maximize(weight @ P), [J + F(P) >> 0])
+    now = [plant]
 
-    P = cp.Variable((plant.n, plant.n), symmetric=True, name="P")
-    problem = cp.Problem(cp.Maximize(cp.trace(plant.M @ P)), [riccati_inequality(plant, P) >> 0])
+    def load(plant: Plant) -> bool:
+        if shape_of(plant) != shape:
+            return False
+        F.load(plant)
+        J.value, weight.value = joint_noise(plant), packed(2 * plant.M - np.diag(np.diag(plant.M)))
+        now[0] = plant
+        return True
 
     def answer() -> tuple[Matrix, Matrix]:
-        value = symmetric_part(P.value)
-        return value, optimal_gain(plant, value)
+        value = unpacked(np.asarray(P.value), n)
+        return value, optimal_gain(now[0], value)
 
-    return Program("largest covariance under the Riccati inequality", problem, answer)
+    load(plant)
+    return Program("largest covariance under the Riccati inequality", problem, answer, load)
 
 
-def riccati_inequality(plant: Plant, P: cp.Expression) -> cp.Expression:
-    """Return the matrix (n + l, n + l), affine in P, that the Riccati inequality asks to be positive semidefinite."""
+def joint_noise(plant: Plant) -> Matrix:
+    """Return J = [[W, N], [N', V]] (n + l, n + l), exactly symmetric."""
+    J = np.block([[plant.W, plant.N], [plant.N.T, plant.V]])
+    return (J + J.T) / 2
+
+
+def riccati_map(plant: Plant, P: Matrix) -> Matrix:
+    """Return the part of the Riccati inequality's matrix that is linear in P.
+
+    continuous: [[A P + P A', P C'], [C P, 0]]    discrete: [[A P A' - P, A P C'], [C P A', C P C']]
+    """
     A, C = plant.A, plant.C
     if plant.is_continuous:
-        state, cross, output = A @ P + P @ A.T, P @ C.T, 0.0
-    else:
-        state, cross, output = A @ P @ A.T - P, A @ P @ C.T, C @ P @ C.T
-    return cp.bmat([[state + plant.W, cross + plant.N], [(cross + plant.N).T, output + plant.V]])
+        return np.block([[A @ P + P @ A.T, P @ C.T], [C @ P, np.zeros((plant.l, plant.l))]])
+    return np.block([[A @ P @ A.T - P, A @ P @ C.T], [C @ P @ A.T, C @ P @ C.T]])
+
+
+def riccati_inequality(plant: Plant, P: Matrix) -> Matrix:
+    """Return the matrix (n + l, n + l), affine in P, that the Riccati inequality asks to be positive semidefinite."""
+    return joint_noise(plant) + riccati_map(plant, P)

@@ -18,7 +18,8 @@ import cvxpy as cp
 import numpy as np
 
 from derive.numeric.plant import Plant
-from lmi.programs.program import Matrix, Program
+from lmi.programs.optimal_covariance import joint_noise, riccati_map
+from lmi.programs.program import Matrix, Program, SymmetricMap, packed, shape_of, unpacked
 
 __all__ = ["optimal_covariance_dual"]
 
@@ -42,27 +43,24 @@ def optimal_covariance_dual(plant: Plant) -> Program:
         >>> bool(abs(program.answer()[0][0, 0] - 2.0) < 1e-9)
         True
     """
-    n, l = plant.n, plant.l  # noqa: E741 (the field's letter for the number of outputs)
-    J = np.block([[plant.W, plant.N], [plant.N.T, plant.V]])
-    Z = cp.Variable((n + l, n + l), symmetric=True, name="Z")
-    upper = np.triu_indices(n)
-    equation = (_adjoint_lyapunov(plant, Z) + plant.M)[upper] == 0
+    shape, n = shape_of(plant), plant.n
+    F = SymmetricMap(plant, riccati_map, "F")
+    J = cp.Parameter((n + plant.l,) * 2, symmetric=True, name="J")
+    weight = cp.Parameter(n * (n + 1) // 2, name="M")
+    Z = cp.Variable((n + plant.l,) * 2, symmetric=True, name="Z")
+    equation = F.adjoint(Z) + weight == 0
     problem = cp.Problem(cp.Minimize(cp.trace(J @ Z)), [Z >> 0, equation])
 
+    def load(plant: Plant) -> bool:
+        if shape_of(plant) != shape:
+            return False
+        F.load(plant)
+        J.value, weight.value = joint_noise(plant), packed(2 * plant.M - np.diag(np.diag(plant.M)))
+        return True
+
     def answer() -> tuple[Matrix, Matrix]:
-        multiplier = np.zeros((n, n))
-        multiplier[upper] = np.asarray(equation.dual_value).ravel()
         S, K = np.split(np.asarray(Z.value)[:n], [n], axis=1)
-        return (multiplier + multiplier.T) / 2, -np.linalg.solve(S, K)
+        return unpacked(np.asarray(equation.dual_value).ravel(), n), -np.linalg.solve(S, K)
 
-    return Program("multiplier of the adjoint Lyapunov equation", problem, answer)
-
-
-def _adjoint_lyapunov(plant: Plant, Z: cp.Expression) -> cp.Expression:
-    """Return A'S + S A + K C + C'K' or [A', C'] Z [A', C']' - S, linear in Z (n + l, n + l)."""
-    n = plant.n
-    stacked = np.vstack([plant.A, plant.C])
-    if plant.is_continuous:
-        half = stacked.T @ Z[:, :n]
-        return half + half.T
-    return stacked.T @ Z @ stacked - Z[:n, :n]
+    load(plant)
+    return Program("multiplier of the adjoint Lyapunov equation", problem, answer, load, attainable=1e-10)

@@ -80,7 +80,7 @@ def test_boundary_mode_is_refused() -> None:
     """An integrator that nothing excites has a strong solution only, and the dual no solution."""
     found = solve_interior_point(_plant("continuous", 1, 1, 0, A=[[0.0]], C=[[1.0]], W=[[0.0]], V=[[1.0]], N=[[0.0]]))
     assert found.P is None
-    assert found.status.startswith("failed: no stabilising solution")
+    assert found.status.startswith("failed: no start")
 
 
 def test_a_wrong_answer_of_the_riccati_equation_is_not_repeated(monkeypatch: pytest.MonkeyPatch) -> None:
