@@ -109,27 +109,28 @@ def _riccati(plant: Plant) -> Answer:
 
     solution = solve_riccati(plant)
     if solution.status == "failed":
-        modes = np.linalg.eigvals(plant.A - plant.N @ np.linalg.solve(plant.V, plant.C))
-        mode = format_mode(modes[np.argmin(np.abs(distance_to_stability(modes, plant.time)))])
-        return Answer(f"failed: no stabilising solution was reached; the mode nearest to the boundary is {mode}")
+        return Answer(f"failed: {solution.reason}")
     P, gain = solution.P, solution.gain
     if solution.status == "stabilising":
-        answer = _covariance(plant, "stabilising", P, gain, covariance_error(plant, P))
+        answer = _covariance(plant, "stabilising", P, gain, solution.error)
         return replace(answer, iterations=solution.newton_steps)
     modes = tuple(complex(mode) for mode in solution.boundary_modes)
     return _strong(plant, P, gain, solution.residual, modes)
 
 
-def _program(build: Callable[[Plant], Program]) -> Callable[[Plant], Answer]:
-    """Return the route that solves a convex program."""
+def _program(build: Callable[[Plant], Program], largest: int) -> Callable[[Plant], Answer]:
+    """Return the route that solves a convex program, for plants that a general solver takes in a second or so."""
 
     def run(plant: Plant) -> Answer:
+        if plant.n > largest:
+            return Answer(f"not attempted: {plant.n} states, above {largest} the interior-point route takes its place")
         solution = solve_covariance(plant, build)
         outcome = solution.outcome
         if solution.P is None or solution.gain is None:
-            return Answer(f"{outcome.status.value} (solver: {outcome.raw_status})")
+            tried = "; ".join(f"{solver}: {status.value}" for solver, status in dict.fromkeys(solution.tried))
+            return Answer(f"{outcome.status.value} (solver: {outcome.raw_status}; tried {tried})")
         error = solution.error if outcome.status is Status.SOLVED else None
-        answer = _covariance(plant, outcome.status.value, solution.P, solution.gain, error)
+        answer = _covariance(plant, solution.status, solution.P, solution.gain, error)
         return replace(answer, iterations=outcome.iterations)
 
     return run
@@ -238,21 +239,22 @@ def _simulation(plant: Plant) -> Answer:
 
 _CONVEX = ("lmi-primal", "lmi-dual", "lmi-h2")
 _OTHERS = ("nlp", "integral", "closed-form")
-_APART = (*_CONVEX, *_OTHERS)
+_APART = (*_CONVEX, "interior-point", *_OTHERS)
 _BASED = ("hamiltonian", "simulation")
 
 ROUTES = (
     RouteSpec("riccati", _riccati, _APART),
-    RouteSpec("lmi-primal", _program(optimal_covariance), ("riccati", *_OTHERS, *_BASED), largest=30),
-    RouteSpec("lmi-dual", _program(optimal_covariance_dual), ("riccati", *_OTHERS, *_BASED), largest=30),
-    RouteSpec("lmi-h2", _program(h2), ("riccati", *_OTHERS, *_BASED), largest=20),
-    RouteSpec("interior-point", _interior_point, _OTHERS, largest=120),
+    RouteSpec("lmi-primal", _program(optimal_covariance, 12), ("riccati", *_OTHERS, *_BASED)),
+    RouteSpec("lmi-dual", _program(optimal_covariance_dual, 20), ("riccati", *_OTHERS, *_BASED)),
+    RouteSpec("lmi-h2", _program(h2, 12), ("riccati", *_OTHERS, *_BASED)),
+    RouteSpec("interior-point", _interior_point, ("riccati", *_OTHERS, *_BASED), largest=120),
     RouteSpec("nlp", _nlp, ("riccati", *_CONVEX, "interior-point", "integral", "closed-form", *_BASED), largest=40),
     RouteSpec("integral", _integral, ("riccati", *_CONVEX, "interior-point", "nlp", "closed-form", *_BASED)),
     RouteSpec("hamiltonian", _hamiltonian, _APART),
     RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", *_BASED)),
     RouteSpec("simulation", _simulation, _APART, largest=50),
 )
-"""Riccati first. The convex programs share coordinates and solver, Riccati and the Hamiltonian's eigenvalues the same
-matrix, the interior-point method starts from the Riccati equation's answer and the simulation runs with its gain, so
-that these do not confirm each other. A sampled answer confirms nothing; it may disagree."""
+"""Riccati first. The convex programs and the interior-point method share coordinates and the form of the problem, Riccati
+and the Hamiltonian's eigenvalues the same matrix, and the simulation runs with Riccati's gain, so that these do not
+confirm each other. The interior-point method and the programs take their coordinates, and it its start, from a rough
+covariance of Lyapunov equations, not from Riccati's answer. A sampled answer confirms nothing; it may disagree."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.extended import divided
-from derive.numeric.modes import Matrix, distance_to_stability, format_mode, spectral_scale
+from derive.numeric.modes import Matrix, distance_to_stability, format_mode, spectral_scale, undetectable_mode
 from derive.numeric.normal import NormalForm, normal_form
 from derive.numeric.plant import Plant
 from derive.numeric.riccati_iterations import Candidate, best_candidate
@@ -149,7 +149,7 @@ def _in_extended_precision(plant: Plant, whole: NormalForm, slack: float) -> Ric
         boundary_modes=boundary.modes,
         newton_steps=found.steps,
     )
-    return solution if found.is_stable(part) and residual < FAILED and sense.doubt < 1 else _failed(solution)
+    return solution if found.is_stable(part) and residual < FAILED and sense.doubt < 1 else _failed(plant, solution)
 
 
 def _in_high_precision(plant: Plant, whole: NormalForm, start: RiccatiSolution) -> RiccatiSolution:
@@ -159,7 +159,7 @@ def _in_high_precision(plant: Plant, whole: NormalForm, start: RiccatiSolution) 
 
     closed = closed_ball(plant, start.P if start.is_stable(plant) else None, DIGITS)
     if closed.proof.radius is None:
-        return _failed(start)
+        return _failed(plant, start)
     with working_bits(closed.bits):
         scaled = floats(closed.P) + floats(closed.P - exact(floats(closed.P))).astype(np.longdouble)
         loop = floats(closed.equation.closed_loop(closed.P))
@@ -183,12 +183,16 @@ def _in_high_precision(plant: Plant, whole: NormalForm, start: RiccatiSolution) 
     )
 
 
-def _failed(solution: RiccatiSolution) -> RiccatiSolution:
+def _failed(plant: Plant, solution: RiccatiSolution) -> RiccatiSolution:
     """Return the solution with its status and the reason why it is none."""
     modes = ", ".join(dict.fromkeys(map(format_mode, solution.near_boundary)))
-    reason = "closed loop: expected stable, found no gain that makes it so; is (A, C) detectable?"
-    if modes:
+    hidden = undetectable_mode(plant.A, plant.C, plant.time)
+    if hidden is not None:
+        reason = f"(A, C): expected detectable, got mode {format_mode(hidden)} unobservable"
+    elif modes:
         reason = f"closed loop: expected stable, got {modes} on the boundary or too near to tell"
+    else:
+        reason = "closed loop: expected stable, found no gain that makes it so within the precision"
     return replace(
         solution,
         status="failed",
