@@ -22,15 +22,17 @@ from lmi.programs.program import Matrix
 __all__ = ["Specification", "Unknowns", "factor"]
 
 RANK_RTOL = 1e-14
-"""Eigenvalues of a covariance below this, relative to the largest, are rounding errors of a zero."""
+"""Eigenvalues of a correlation matrix below this, relative to the largest, are rounding errors of a zero."""
 
 
 def factor(covariance: Matrix) -> Matrix:
-    """Return G (n, rank) with G G' = covariance >= 0."""
-    sizes, directions = np.linalg.eigh(covariance)
+    """Return G (n, rank) with G G' = covariance >= 0; the rank is decided whatever the units of its rows."""
+    variances = np.diag(covariance)
+    units = np.sqrt(np.where(variances > 0, variances, 1.0))
+    sizes, directions = np.linalg.eigh(covariance / np.outer(units, units))
     kept = sizes > RANK_RTOL * max(sizes[-1], np.finfo(float).tiny)
     kept[-1] = True
-    return directions[:, kept] * np.sqrt(np.maximum(sizes[kept], 0.0))
+    return units[:, None] * directions[:, kept] * np.sqrt(np.maximum(sizes[kept], 0.0))
 
 
 @dataclass(frozen=True, eq=False)

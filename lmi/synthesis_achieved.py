@@ -1,0 +1,82 @@
+"""What a gain achieves, recomputed from the gain alone: no program's word enters."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from derive.numeric.lyapunov import error_covariance
+from derive.numeric.modes import distance_to_stability
+from derive.numeric.norms import HInfNorm, hinf_norm
+from derive.numeric.plant import Plant
+from lmi.programs.observer import factor
+
+__all__ = ["Achieved", "achieved", "decay_of", "radius_of"]
+
+Matrix = NDArray[np.floating[Any]]
+
+
+@dataclass(frozen=True)
+class Achieved:
+    """What a stabilising gain achieves, in floating point.
+
+    Attributes:
+        cost: tr(M P) with P the error covariance, the square of the H2 norm from noise to M^(1/2) e.
+        hinf: the H-infinity norm of the same.
+        decay: the rate [1/s] at which the slowest mode falls, in discrete time -ln|lambda| / dt (dt = 1 without one).
+        modes: of A - L C, the slowest first.
+    """
+
+    cost: float
+    hinf: HInfNorm
+    decay: float
+    modes: tuple[complex, ...]
+
+    @property
+    def h2(self) -> float:
+        """The H2 norm, sqrt(tr(M P))."""
+        return float(np.sqrt(self.cost))
+
+
+def achieved(plant: Plant, gain: Matrix) -> Achieved | None:
+    """Compute what a gain achieves: H2 by a Lyapunov equation, H-infinity by a Hamiltonian matrix's eigenvalues.
+
+    Args:
+        plant: A (n, n), C (l, n), W, V, N and the weight M.
+        gain: L (n, l).
+
+    Returns:
+        The values, or None when A - L C is not asymptotically stable.
+
+    Example:
+        >>> from derive.numeric.plant import example_plant
+        >>> from derive.numeric.riccati import solve_riccati
+        >>> solution = solve_riccati(example_plant())
+        >>> found = achieved(example_plant(), solution.gain)
+        >>> bool(abs(found.cost - solution.P.trace()) < 1e-9 * found.cost)
+        True
+    """
+    loop = plant.A - gain @ plant.C
+    modes = np.linalg.eigvals(loop)
+    distance = distance_to_stability(modes, plant.time)
+    if not np.all(distance < 0):
+        return None
+    P = error_covariance(plant.A, plant.C, plant.W, plant.V, plant.N, gain, plant.time)
+    cost = max(float(np.trace(plant.M @ P)), 0.0)
+    root = factor(np.block([[plant.W, plant.N], [plant.N.T, plant.V]]))
+    norm = hinf_norm(loop, root[: plant.n] - gain @ root[plant.n :], factor(plant.M).T, plant.time)
+    ordered = tuple(complex(mode) for mode in modes[np.argsort(-distance, kind="stable")])
+    return Achieved(cost, norm, decay_of(plant, ordered[0]), ordered)
+
+
+def decay_of(plant: Plant, mode: complex) -> float:
+    """Return the rate at which a mode falls: -Re lambda, in discrete time -ln|lambda| / dt."""
+    if plant.is_continuous:
+        return -mode.real
+    return -float(np.log(abs(mode))) / (plant.dt or 1.0) if mode else np.inf
+
+
+def radius_of(plant: Plant, decay: float) -> float:
+    """Return the modulus exp(-decay dt) of a mode that falls at a rate, in discrete time."""
+    return float(np.exp(-decay * (plant.dt or 1.0)))

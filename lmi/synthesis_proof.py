@@ -1,0 +1,127 @@
+"""Proofs about a request: that a gain meets it and is best, or that no gain can meet it."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from derive.numeric.modes import format_mode, undetectable_mode
+from derive.numeric.plant import Plant
+from lmi.certification import NotCertifiedError
+from lmi.synthesis_achieved import decay_of, radius_of
+from lmi.synthesis_request import Request
+from lmi.synthesis_search import Judged, shifted, smallest_norm
+
+if TYPE_CHECKING:
+    from lmi.certificate_design import DesignCertificate
+
+__all__ = ["Impossible", "certify", "hidden_mode", "why_not"]
+
+GAP = 9e-5
+"""The floor that is certified for every gain is below the norm of the gain found by this, relative."""
+
+MARGIN = 1e-6
+"""The certified bound of a norm exceeds the computed one by this, relative, as room for the certificate's rounding."""
+
+
+@dataclass(frozen=True)
+class Impossible:
+    """Which specification fails and why, and whether that is proved."""
+
+    reason: str
+    proved: bool
+
+
+def certify(plant: Plant, request: Request, found: Judged) -> tuple["DesignCertificate | None", str]:
+    """Make the certificate of a gain.
+
+    Returns:
+        The certificate or None, and what it fails to prove, empty when it proves all that was asked.
+    """
+    bound = found.norm * (1 + MARGIN)
+    gamma = bound if request.gamma is None else min(bound, request.gamma)
+    problems = []
+    for norm, floor in _claims(gamma, _floor(plant, request, found)):
+        try:
+            certificate = _certified(plant, found, request, norm, floor)
+        except NotCertifiedError as error:
+            problems.append(str(error))
+            continue
+        lacking = request.objective == "hinf" and problems
+        return certificate, problems[0] if lacking else ""
+    return None, problems[0]
+
+
+def _floor(plant: Plant, request: Request, found: Judged) -> float | None:
+    """Return what is to be proved to be no more than the norm of every stabilising gain, whatever its decay."""
+    if request.objective == "h2" or request.gamma is not None:
+        return None
+    free = found if request.decay is None else smallest_norm(plant, None)
+    return None if free is None else free.achieved.hinf.lower * (1 - GAP)
+
+
+def _claims(gamma: float, floor: float | None) -> list[tuple[float | None, float | None]]:
+    """Return pairs of a norm and a floor to prove, the strongest first."""
+    if gamma == 0.0:
+        return [(None, None)]
+    return [*([(gamma, floor)] if floor else []), (gamma, None), (None, None)]
+
+
+def _certified(
+    plant: Plant, found: Judged, request: Request, gamma: float | None, floor: float | None
+) -> "DesignCertificate":
+    from lmi.certification_design import certify_design
+
+    return certify_design(plant, found.gain, gamma=gamma, decay=request.decay, floor=floor)
+
+
+# ------------------------------------------------------------------------------------------------ impossible requests
+def hidden_mode(plant: Plant, request: Request) -> Impossible | None:
+    """Tell whether a mode that no gain moves decays too slowly."""
+    if request.decay is None:
+        return None
+    moved = shifted(plant, request.decay)
+    hidden = undetectable_mode(moved.A, moved.C, plant.time)
+    if hidden is None:
+        return None
+    mode = hidden - request.decay if plant.is_continuous else hidden * radius_of(plant, request.decay)
+    word = "uncontrollable" if request.dual else "unobservable"
+    reason = f"decay {request.decay:g}: mode {format_mode(mode)} is {word}, no gain moves it"
+    return _decided(plant, f"{reason}, and it decays at {decay_of(plant, mode):.6g}", decay=request.decay)
+
+
+def why_not(plant: Plant, request: Request) -> Impossible:
+    """Tell which specification of a request fails for which no gain was found."""
+    if request.gamma is None:
+        return Impossible("no gain was found that stabilises" + _with_decay(request), False)
+    free = smallest_norm(plant, None)
+    if free is not None and free.norm * (1 - GAP) >= request.gamma:
+        floor = free.norm * (1 - GAP)
+        return _decided(plant, f"gamma {request.gamma:g}: every gain has an H-infinity norm above {floor:.6g}", floor)
+    if request.decay is None:
+        near = "none was found" if free is None else f"the smallest found is {free.norm:.8g}"
+        return _decided(plant, f"gamma {request.gamma:g}: {near}", request.gamma)
+    return _together(plant, request)
+
+
+def _together(plant: Plant, request: Request) -> Impossible:
+    both = smallest_norm(plant, request.decay)
+    reach = "none" if both is None else f"a norm of {both.norm:.6g} at least"
+    reason = (
+        f"gamma {request.gamma:g} and decay {request.decay:g} each alone can be met; "
+        f"together, with one Lyapunov matrix for both, the gains found have {reach}"
+    )
+    return _decided(plant, reason, request.gamma, request.decay)
+
+
+def _with_decay(request: Request) -> str:
+    return "" if request.decay is None else f" and has decay {request.decay:g}"
+
+
+def _decided(plant: Plant, reason: str, gamma: float | None = None, decay: float | None = None) -> Impossible:
+    """Say whether it is proved that no gain has an H-infinity norm of at most gamma, or the decay."""
+    from lmi.certification_design import certify_infeasible
+
+    try:
+        certify_infeasible(plant, gamma=gamma, decay=decay)
+    except NotCertifiedError as error:
+        return Impossible(f"{reason} (not proved: {error})", False)
+    return Impossible(f"{reason} (proved)", True)
