@@ -1,4 +1,4 @@
-"""The command line of the convex programs: `lmi validate PLANT`, `lmi certify FILE`."""
+"""The command line of the convex programs: `lmi validate PLANT`, `lmi design PLANT`, `lmi certify FILE`."""
 
 import sys
 from typing import Any, NoReturn
@@ -76,6 +76,44 @@ def validate(plant: str, form: str, certificate: str | None) -> int:
 
         print_table(validation)
     return validation.verdict.exit_code
+
+
+@cli.command()
+@click.argument("plant")
+@click.option("--objective", type=click.Choice(["h2", "hinf"]), default="h2", show_default=True, help="What is small.")
+@click.option("--gamma", type=float, help="An H-infinity norm that suffices; without it the smallest is sought.")
+@click.option("--decay", type=float, help="Rate [1/s] at which every mode falls at least.")
+@click.option("--dual", is_flag=True, help="Read A, B, Q, R and design state feedback u = -Kx.")
+@click.option("-o", "--output", metavar="FILE", help="Where to write the design; lmi certify verifies it.")
+@click.option(
+    "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True, help="What to print."
+)
+def design(
+    plant: str, objective: str, gamma: float | None, decay: float | None, dual: bool, output: str | None, form: str
+) -> int:
+    """Find an observer gain for PLANT and prove what it achieves.
+
+    The cost tr MP is the square of the H2 norm from noise to M^(1/2) e, the error weighted; the H-infinity norm is that
+    of the same transfer matrix. Both are recomputed from the gain, and certified exactly.
+
+    Exit codes: 0 certified, 1 proved that no gain meets the request, 2 bad input or usage, 3 not certified.
+    """
+    from rich.console import Console
+
+    from derive.errors import InputError
+    from lmi.design_command import design_lines
+    from lmi.synthesis import design as run
+    from lmi.synthesis_file import design_text, write_design
+
+    try:
+        with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
+            found = run(plant, objective, gamma=gamma, decay=decay, dual=dual, progress=status.update)
+        if output is not None and found.gain is not None:
+            write_design(found, output)
+    except InputError as error:
+        raise click.ClickException(str(error)) from None
+    click.echo(design_text(found) if form == "json" else "\n".join(design_lines(found)))
+    return found.verdict.exit_code
 
 
 @cli.command()
