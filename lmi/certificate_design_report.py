@@ -3,14 +3,14 @@
 from collections.abc import Iterator
 from decimal import Context, Decimal
 from fractions import Fraction
-from math import isqrt
+from math import ceil, isqrt
 
 from lmi.certificate import Interval
 from lmi.certificate_design import DesignBounds
 from lmi.certificate_design_file import Design
 from lmi.certificate_report import at_least, at_most, ends, excess_line
 
-__all__ = ["decay_rate", "design_lines", "root_below", "unproved"]
+__all__ = ["DIGITS", "above_exp", "below_exp", "decay_rate", "design_lines", "root_below", "unproved"]
 
 DIGITS = 10
 
@@ -20,6 +20,8 @@ ROOT_BITS = 200
 PLACES = 60
 EXACTLY = Context(prec=PLACES + 20)
 """Its exp and ln are rounded correctly, to the last digit."""
+
+LARGEST_EXPONENT = 10**5
 
 SLACK = Fraction(1, 10**PLACES)
 
@@ -102,16 +104,24 @@ def below_exp(r: Fraction, x: Fraction) -> bool:
     """Tell whether r <= exp(-x); False where they are closer than 60 digits."""
     if x == 0:
         return r <= 1
-    if abs(x) > 10**5:
-        return False
-    exponent = Decimal(-((-x) // SLACK)).scaleb(-PLACES, EXACTLY)  # at least x
-    return Fraction(EXACTLY.exp(-exponent)) * (1 - SLACK) >= r
+    return abs(x) < LARGEST_EXPONENT and r <= Fraction(EXACTLY.exp(_decimal_above(x).copy_negate())) * (1 - SLACK)
+
+
+def above_exp(r: Fraction, x: Fraction) -> bool:
+    """Tell whether r > exp(-x); False where they are closer than 60 digits."""
+    if x == 0:
+        return r > 1
+    return abs(x) < LARGEST_EXPONENT and r > Fraction(EXACTLY.exp(_decimal_above(-x))) * (1 + SLACK)
+
+
+def _decimal_above(x: Fraction) -> Decimal:
+    """Return a decimal that is at least x, and hardly more."""
+    return Decimal(ceil(x / SLACK)).scaleb(-PLACES, EXACTLY)
 
 
 def decay_rate(radius: Fraction, period: Fraction) -> Fraction:
     """Return a number just below -ln(radius) / period, 0 < radius < 1."""
-    above = EXACTLY.divide(Decimal(radius.numerator), Decimal(radius.denominator))
-    logarithm = Fraction(EXACTLY.ln(above))
+    logarithm = Fraction(EXACTLY.ln(EXACTLY.divide(Decimal(radius.numerator), Decimal(radius.denominator))))
     return (-logarithm * (1 - SLACK) - SLACK) / period
 
 

@@ -13,7 +13,14 @@ from math import gcd
 from lmi.certificate import ExactPlant
 from lmi.certificate_arithmetic import Exact, TooLargeError, is_definite
 
-__all__ = ["LARGEST", "is_hurwitz", "moved_to_the_half_plane", "proved_unstable", "stabilises"]
+__all__ = [
+    "LARGEST",
+    "characteristic_polynomial",
+    "is_hurwitz",
+    "moved_to_the_half_plane",
+    "proved_unstable",
+    "stabilises",
+]
 
 LARGEST = 30
 """States up to which Routh's criterion takes seconds."""

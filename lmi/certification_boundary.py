@@ -6,6 +6,7 @@ close to P*. With U spanning the complement, F U = U F_r, q = U q_r U', and for 
 U (that of F_r, C U, q_r at Pi) U': a strict lower bound Pi of the smaller plant gives F(P) >= 0.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, cast
@@ -15,7 +16,7 @@ from flint import fmpq, fmpq_mat, fmpq_poly
 from lmi.certificate import ExactPlant
 from lmi.certificate_arithmetic import Exact
 
-__all__ = ["Reduced", "without_boundary"]
+__all__ = ["Reduced", "unseen", "without_boundary", "without_forgotten"]
 
 LARGEST = 60
 """States up to which polynomials are factored in seconds."""
@@ -52,12 +53,49 @@ class Reduced:
 
     def lifted(self, Pi: Exact) -> Exact:
         """Return U Pi U'."""
-        U = Exact.of([[_fraction(x) for x in row] for row in self.U.tolist()])
-        return U @ Pi @ U.T
+        return self.basis @ Pi @ self.basis.T
+
+    @property
+    def basis(self) -> Exact:
+        """U."""
+        return _exact(self.U)
+
+    def smaller(self, plant: ExactPlant) -> ExactPlant:
+        """Return the plant of the states that are kept, without its cross term."""
+        M = self.U.transpose() * _rational(plant.M) * self.U
+        A, C, W, V, weight = (_exact(X) for X in (self.F, self.C, self.q, self.V, M))
+        return ExactPlant(plant.time, A, C, W, V, Exact(((0,) * plant.l,) * self.m), weight)
+
+    def left_inverse(self) -> Exact:
+        """Return (U'U)^-1 U'."""
+        return _exact((self.U.transpose() * self.U).solve(self.U.transpose()))
 
 
 def without_boundary(plant: ExactPlant) -> Reduced | None:
     """Remove the unexcited boundary modes, found exactly; None when there are none, or the plant is large."""
+    return _without(plant, lambda polynomial: _boundary_factor(polynomial, plant.is_continuous))
+
+
+def without_forgotten(plant: ExactPlant) -> Reduced | None:
+    """Remove the unexcited modes that are stable or on the boundary; None when there are none, or the plant is large.
+
+    A polynomial whose roots are on both sides is left alone.
+    """
+    return _without(plant, lambda polynomial: _forgotten_factor(polynomial, plant.is_continuous))
+
+
+def unseen(plant: ExactPlant) -> tuple[Exact, Exact] | None:
+    """Return U (n, m) and T (m, m) with A U = U T and C U = 0, m as large as possible; None when the plant is large."""
+    if plant.n > LARGEST:
+        return None
+    A, C = _rational(plant.A), _rational(plant.C)
+    U = _unexcited(A.transpose(), C.transpose() * C)
+    if U is None:
+        return None
+    return _exact(U), _exact((U.transpose() * U).solve(U.transpose() * A * U))
+
+
+def _without(plant: ExactPlant, chosen: Callable[[fmpq_poly], fmpq_poly]) -> Reduced | None:
     if plant.n > LARGEST:
         return None
     A, C, W, V, N = (_rational(X) for X in (plant.A, plant.C, plant.W, plant.V, plant.N))
@@ -67,7 +105,7 @@ def without_boundary(plant: ExactPlant) -> Reduced | None:
     if Z is None:
         return None
     T = (Z.transpose() * Z).solve(Z.transpose() * F.transpose() * Z)
-    annihilator = _boundary_factor(T.charpoly(), plant.is_continuous)
+    annihilator = chosen(T.charpoly())
     Y = _kernel(_evaluated(annihilator, T))
     if Y is None:
         return None
@@ -100,6 +138,16 @@ def _boundary_factor(polynomial: fmpq_poly, continuous: bool) -> fmpq_poly:
     for factor, power in polynomial.factor()[1]:
         roots = cast(Any, factor.numer().complex_roots())
         if _mirrored(factor, continuous) and all(_on_boundary(complex(root), continuous) for root, _ in roots):
+            product *= factor**power
+    return product
+
+
+def _forgotten_factor(polynomial: fmpq_poly, continuous: bool) -> fmpq_poly:
+    """Return the product of the factors of a polynomial whose roots are stable or on the boundary."""
+    product = fmpq_poly([1])
+    for factor, power in polynomial.factor()[1]:
+        roots = [complex(root) for root, _ in cast(Any, factor.numer().complex_roots())]
+        if all((root.real if continuous else abs(root) - 1) <= CLOSE * (1 + abs(root)) for root in roots):
             product *= factor**power
     return product
 
@@ -145,6 +193,10 @@ def _kernel(X: fmpq_mat) -> fmpq_mat | None:
 
 def _rational(X: Exact) -> fmpq_mat:
     return fmpq_mat([[fmpq(x, X.denominator) for x in row] for row in X.numerators])
+
+
+def _exact(X: fmpq_mat) -> Exact:
+    return Exact.of([[_fraction(x) for x in row] for row in X.tolist()])
 
 
 def _fraction(x: fmpq) -> Fraction:

@@ -4,7 +4,8 @@ In coordinates in which the error covariance of the gain has about a unit diagon
     decay: Y with (loop + a) Y + Y (loop + a)' = -I (discrete: (loop / r) Y (loop / r)' - Y);
     norm:  P = P_g + h D, where P_g solves G_L(P) + g P M P = 0 (discrete: P = loop U loop' + J_L, U = (P^-1 - g M)^-1),
            and D is such that the left side falls by h I.
-P_g comes from Newton's method started at 0, which rises to it whenever the norm is below gamma. Nothing here is trusted.
+P_g comes from Newton's method started at 0, which rises to it whenever the norm is below gamma. Nothing here is
+trusted.
 """
 
 from collections.abc import Callable, Iterator
@@ -223,7 +224,7 @@ def _norm(cost: Certificate, asked: float | None) -> Norm | None:
 def _levels(plant: ExactPlant, gain: Exact, asked: float | None) -> Iterator[Fraction]:
     estimate = _estimated_norm(plant, gain)
     levels = [estimate * (1 + share) for share in NORM_SHARES]
-    yield from (Fraction(x) for x in levels if isfinite(x) and 0 < x and (asked is None or x < asked))
+    yield from (Fraction(x) for x in levels if isfinite(x) and x > 0 and (asked is None or x < asked))
     if asked is not None and asked > 0:
         yield Fraction(asked)
 

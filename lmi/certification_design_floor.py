@@ -13,14 +13,14 @@ Stable modes that the noise leaves alone make P singular. They are split off exa
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import isqrt, sqrt
+from math import sqrt
 from typing import Any, cast
 
 import numpy as np
-from flint import arb, arb_mat, fmpq_mat
+from flint import arb, arb_mat
 from numpy.typing import NDArray
 
-from derive.numeric.balls import exact, floats, identity, middle, norm, working_bits
+from derive.numeric.balls import exact, identity, middle, working_bits
 from derive.numeric.lyapunov import solve_lyapunov
 from derive.numeric.newton import lyapunov_in_balls
 from derive.numeric.plant import Plant
@@ -28,6 +28,7 @@ from lmi.certificate import ExactPlant
 from lmi.certificate_arithmetic import Exact
 from lmi.certificate_design import Floor, floor_checks, proper, reduced_noise
 from lmi.certification import NotCertifiedError
+from lmi.certification_boundary import Reduced, without_forgotten
 from lmi.certification_frame import Grid, sizes
 from lmi.certification_instability import is_stable
 from lmi.scaling import balanced, scaled_plant
@@ -88,15 +89,26 @@ def certified_floor(plant: ExactPlant, floor: float, reached: float) -> Floor:
 
 def _proposals(plant: ExactPlant, floor: float, reached: float) -> Iterator[Floor]:
     """Iterate over certificates, what looks like the best one first."""
-    filtering = Filtering.of(plant)
+    reduced = without_forgotten(plant)
+    if reduced is not None and reduced.m == 0:
+        raise NotCertifiedError("floor: the noise leaves every mode alone that does not decay by itself")
+    filtering = Filtering.of(plant if reduced is None else reduced.smaller(plant))
     smallest = filtering.smallest_level(floor, max(reached, floor))
     levels = [level for level in (filtering.level(smallest * (1 + share)) for share in ABOVE) if level is not None]
     for level in sorted(levels, key=lambda level: -level.bound)[:3]:
         try:
             with working_bits(BITS):
-                yield filtering.certificate(level)
+                found = filtering.certificate(level)
+                yield found if reduced is None else _lifted(found, reduced)
         except (ArithmeticError, ValueError):
             continue
+
+
+def _lifted(floor: Floor, reduced: Reduced) -> Floor:
+    """Return Z = U Z_r U', U'H U = H_r and K U = U K_r for the whole plant: F U = U F_r, q = U q_r U'."""
+    left = reduced.left_inverse()
+    K = None if floor.K is None else reduced.basis @ floor.K @ left
+    return Floor(reduced.lifted(floor.Z), left.T @ floor.H @ left, K)
 
 
 @dataclass(frozen=True, eq=False)
