@@ -7,9 +7,10 @@ inverse, root, quotient or logarithm comes with the reason why it exists, and wa
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from derive.analysis import is_scalar
@@ -268,11 +269,27 @@ def consulting(reading: Reading) -> tuple[Reading, Consulted, Consulted]:
     return replace(reading, context=context), derivatives, moments
 
 
-def names_of(name: str, relations: Mapping[str, Poly]) -> list[str]:
+def names_of(name: str, relations: Iterable[str]) -> list[str]:
     """Return the relations that a declaration or lemma stands for: itself, its blocks, or both sides of an inverse."""
-    return [r for r in relations if r == name or r.startswith((name + "[", name + "."))]
+    return [relation for relation in relations if name in _names(relation)]
 
 
+def by_name(relations: Iterable[str]) -> dict[str, list[str]]:
+    """Return the relations that each name stands for."""
+    found: dict[str, list[str]] = {}
+    for relation in relations:
+        for name in _names(relation):
+            found.setdefault(name, []).append(relation)
+    return found
+
+
+@lru_cache(maxsize=1 << 14)
+def _names(relation: str) -> tuple[str, ...]:
+    """Return a relation, and what is in front of each bracket or dot in its name."""
+    return (relation, *(relation[:i] for i, letter in enumerate(relation) if letter in "[."))
+
+
+@lru_cache(maxsize=1 << 14)
 def owner(name: str) -> str:
     """Return the declaration or lemma that a relation stands for."""
     return re.sub(r"(\[\d+,\d+\]|\.left|\.right)$", "", name)

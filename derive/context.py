@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from derive.adopting import Consulted, adopt, adopt_inverse, consulting, declare, names_of, owner
+from derive.adopting import Consulted, adopt, adopt_inverse, by_name, consulting, declare, names_of, owner
 from derive.declared import (
     Declared,
     DeclaredAtom,
@@ -31,7 +31,7 @@ from derive.waiting import Wait, waits_of
 
 __all__ = [
     "Consulted", "Declared", "DeclaredAtom", "DeclaredFact", "DeclaredInverse", "Item", "Theory", "adopt",
-    "adopt_inverse", "consulting", "declare", "defines", "names_of", "owner", "terms_of",
+    "adopt_inverse", "by_name", "consulting", "declare", "defines", "names_of", "owner", "terms_of",
 ]  # fmt: skip
 
 

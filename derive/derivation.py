@@ -9,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Literal
 
-from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt, names_of, owner
+from derive.context import DeclaredAtom, DeclaredInverse, Theory, adopt, by_name, owner
 from derive.display import Displayed
 from derive.functions import Definite, Limit, Rate, Start, single_of, value
 from derive.induction import Induction, atoms_in, check_induction, starts_in
@@ -122,6 +123,11 @@ class Step(Displayed):
     number: str = ""
     source: str = ""
     lemma: bool = False
+
+    @cached_property
+    def rests_on(self) -> frozenset[str]:
+        """What it names, and what the relations and facts of its proof stand for."""
+        return frozenset(map(owner, (*self.uses, *self.proof.relations())))
 
 
 def claims(statement: Equation, rule: Rule, reading: Reading) -> list[Certificate]:
@@ -309,7 +315,7 @@ def _below(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> se
     while waiting:
         seen.add(name := waiting.pop())
         if name in earlier:
-            waiting |= set(map(owner, (*earlier[name].uses, *earlier[name].proof.relations()))) - seen
+            waiting |= earlier[name].rests_on - seen
         elif name in reading.real.reasons:
             waiting |= set(reading.real.reasons[name]) - seen
     return seen
@@ -318,9 +324,10 @@ def _below(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> se
 def _behind(names: set[str], reading: Reading, earlier: Mapping[str, Step]) -> set[str]:
     """Return the names, all that they rest on, and the functions of which relations and facts among them speak."""
     context, real, seen = reading.context, reading.real, set[str]()
+    parts = by_name(context.relations)
     while names != seen:
         seen = _below(names, reading, earlier)
-        polys = [context.relations[r] for name in seen for r in names_of(name, context.relations)]
+        polys = [context.relations[r] for name in seen for r in parts.get(name, ())]
         polys += [p for name in seen & context.facts.keys() for row in context.facts[name].matrix for p in row]
         names = seen | (real.reached({s for poly in polys for s in scalars_of(poly)}) & real.atoms.keys())
     return seen
@@ -331,7 +338,7 @@ def hidden_from(step: Step, reading: Reading, earlier: Mapping[str, Step]) -> se
     cases = reading.real.cases
     hidden = set(cases - _below({*step.uses, *step.proof.relations()}, reading, earlier)) if cases else set[str]()
     for name, other in earlier.items() if hidden else ():
-        if hidden.intersection(map(owner, (*other.uses, *other.proof.relations()))):
+        if hidden & other.rests_on:
             hidden.add(name)
     return hidden
 

@@ -96,7 +96,7 @@ class Real:
 
     def find(self, kind: str, of: Poly, by: Poly | None = None, over: str = "") -> str | None:
         """Return the name of an atom; definitions in its argument may be written out or not."""
-        same = [a for a in self.atoms.values() if (a.kind, a.by, a.over) == (kind, by, over)]
+        same = [a for a in self.atoms.values() if a.kind == kind and a.over == over and a.by == by]
         exact = next((a.name for a in same if a.of == of), None)
         if exact or kind in MATRIX:
             return exact
