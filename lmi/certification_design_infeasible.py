@@ -23,7 +23,7 @@ __all__ = ["Infeasible", "certify_infeasible"]
 GAPS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 """By how much more than the norm asked for every gain is tried to be proved to have, relative."""
 
-SHARES = (1e-9, 1e-6, 1e-3, 1e-1)
+SHARES = (0.0, 1e-12, 1e-9, 1e-6, 1e-3, 1e-1)
 """By how much less than a mode is claimed, relative."""
 
 
