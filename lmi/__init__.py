@@ -15,9 +15,10 @@ from derive._version import __version__
 if TYPE_CHECKING:
     from derive.numeric.plant import Plant
     from lmi.certification import Certified
+    from lmi.synthesis import Design
     from lmi.validation import Validation
 
-__all__ = ["__version__", "certify", "validate"]
+__all__ = ["__version__", "certify", "design", "validate"]
 
 
 def validate(
@@ -36,3 +37,18 @@ def certify(plant: "Plant | str | PathLike[str] | Mapping[str, Any]", gain: Any 
 
     plant = as_plant(plant)
     return certified(plant, None if gain is None else as_gain("gain", gain, plant))
+
+
+def design(
+    plant: "Plant | str | PathLike[str] | Mapping[str, Any]",
+    objective: str = "h2",
+    *,
+    gamma: float | None = None,
+    decay: float | None = None,
+    dual: bool = False,
+    progress: Callable[[str], None] | None = None,
+) -> "Design":
+    """Find an observer gain, or one of state feedback, and prove what it achieves; see `lmi.synthesis.design`."""
+    from lmi.synthesis import design as run
+
+    return run(plant, objective, gamma=gamma, decay=decay, dual=dual, progress=progress)

@@ -94,14 +94,17 @@ class Synthesis:
         return self.unit * float(np.sqrt(max(float(level.value), 0.0)))
 
     def gain_within(self, gamma: float) -> Matrix | None:
-        """Return a gain whose H-infinity norm the program bounds by gamma, the least covariance X^-1 with it.
+        """Return a gain whose H-infinity norm the program bounds by gamma, with a small bound X^-1 of the covariance.
 
-        Without a decay that is the central gain: X is then the greatest one, in the order of symmetric matrices.
+        Without a decay that is the central gain: there is then a greatest X, in the order of symmetric matrices, and
+        the greatest tr(X) finds it more accurately than the smallest tr(X^-1) does.
         """
         unknowns = Unknowns.of(self.plant)
-        level = (gamma / self.unit) ** 2
-        smallness = cp.trace(-unknowns.X)
-        return self._gain(self._program("central gain", unknowns, smallness, hinf(level)(unknowns)))
+        constraints = hinf((gamma / self.unit) ** 2)(unknowns)
+        if not self.specifications:
+            return self._gain(self._program("central gain", unknowns, cp.trace(-unknowns.X), constraints))
+        size, bound = cost_bound(unknowns, np.eye(self.plant.n))
+        return self._gain(self._program("small covariance", unknowns, size, [*constraints, *bound]))
 
     def cheapest_gain(self) -> Matrix | None:
         """Return the gain with the smallest bound of tr(M P)."""
@@ -110,9 +113,7 @@ class Synthesis:
         cost, bound = cost_bound(unknowns, weight)
         return self._gain(self._program("smallest cost", unknowns, cost, [*gramian(unknowns), *bound]))
 
-    def _program(
-        self, name: str, unknowns: Unknowns, objective: cp.Expression, constraints: list[cp.Constraint]
-    ) -> Program:
+    def _program(self, name: str, unknowns: Unknowns, objective: Any, constraints: list[cp.Constraint]) -> Program:
         """Return the program with what every gain has to satisfy."""
         bounds = [unknowns.X >> 0, self.widest * np.eye(self.plant.n) - unknowns.X >> 0]
         asked = [constraint for specification in self.specifications for constraint in specification(unknowns)]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from derive.numeric.modes import format_mode, undetectable_mode
 from derive.numeric.plant import Plant
 from lmi.certification import NotCertifiedError
-from lmi.synthesis_achieved import decay_of, radius_of
+from lmi.synthesis_achieved import radius_of
 from lmi.synthesis_request import Request
 from lmi.synthesis_search import Judged, shifted, smallest_norm
 
@@ -15,11 +15,15 @@ if TYPE_CHECKING:
 
 __all__ = ["Impossible", "certify", "hidden_mode", "why_not"]
 
-GAP = 9e-5
+GAP = 9.5e-5
 """The floor that is certified for every gain is below the norm of the gain found by this, relative."""
 
 MARGIN = 1e-6
 """The certified bound of a norm exceeds the computed one by this, relative, as room for the certificate's rounding."""
+
+
+SHARP = 2.2e-4
+"""A floor is looked for from here below the smallest norm found, relative."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +88,8 @@ def hidden_mode(plant: Plant, request: Request) -> Impossible | None:
         return None
     mode = hidden - request.decay if plant.is_continuous else hidden * radius_of(plant, request.decay)
     word = "uncontrollable" if request.dual else "unobservable"
-    reason = f"decay {request.decay:g}: mode {format_mode(mode)} is {word}, no gain moves it"
-    return _decided(plant, f"{reason}, and it decays at {decay_of(plant, mode):.6g}", decay=request.decay)
+    reason = f"decay {request.decay:g} fails: mode {format_mode(mode)} is {word} and stays with every gain"
+    return _decided(plant, reason, decay=request.decay)
 
 
 def why_not(plant: Plant, request: Request) -> Impossible:
@@ -93,23 +97,18 @@ def why_not(plant: Plant, request: Request) -> Impossible:
     if request.gamma is None:
         return Impossible("no gain was found that stabilises" + _with_decay(request), False)
     free = smallest_norm(plant, None)
-    if free is not None and free.norm * (1 - GAP) >= request.gamma:
-        floor = free.norm * (1 - GAP)
-        return _decided(plant, f"gamma {request.gamma:g}: every gain has an H-infinity norm above {floor:.6g}", floor)
-    if request.decay is None:
-        near = "none was found" if free is None else f"the smallest found is {free.norm:.8g}"
-        return _decided(plant, f"gamma {request.gamma:g}: {near}", request.gamma)
-    return _together(plant, request)
+    if request.decay is not None and free is not None and free.norm <= request.gamma:
+        return _together(plant, request)
+    near = "no gain was found" if free is None else f"the smallest norm found is {free.norm:.8g}"
+    least = 0.0 if free is None else free.norm * (1 - SHARP)
+    return _decided(plant, f"gamma {request.gamma:g} fails: {near}", gamma=max(least, request.gamma))
 
 
 def _together(plant: Plant, request: Request) -> Impossible:
     both = smallest_norm(plant, request.decay)
-    reach = "none" if both is None else f"a norm of {both.norm:.6g} at least"
-    reason = (
-        f"gamma {request.gamma:g} and decay {request.decay:g} each alone can be met; "
-        f"together, with one Lyapunov matrix for both, the gains found have {reach}"
-    )
-    return _decided(plant, reason, request.gamma, request.decay)
+    reach = "" if both is None else f", at the decay the smallest norm found is {both.norm:.6g}"
+    reason = f"gamma {request.gamma:g} and decay {request.decay:g} fail together: each alone can be met{reach}"
+    return Impossible(f"{reason}; not proved", False)
 
 
 def _with_decay(request: Request) -> str:
@@ -118,10 +117,10 @@ def _with_decay(request: Request) -> str:
 
 def _decided(plant: Plant, reason: str, gamma: float | None = None, decay: float | None = None) -> Impossible:
     """Say whether it is proved that no gain has an H-infinity norm of at most gamma, or the decay."""
-    from lmi.certification_design import certify_infeasible
+    from lmi.certification_design_infeasible import certify_infeasible
 
     try:
-        certify_infeasible(plant, gamma=gamma, decay=decay)
-    except NotCertifiedError as error:
-        return Impossible(f"{reason} (not proved: {error})", False)
-    return Impossible(f"{reason} (proved)", True)
+        proof = certify_infeasible(plant, gamma=gamma, decay=decay)
+    except NotCertifiedError:
+        return Impossible(f"{reason}; not proved", False)
+    return Impossible(f"{reason}; proved: {proof.reason}", True)

@@ -13,12 +13,18 @@ from lmi.synthesis_gain import COORDINATES, Synthesis, optimal_h2_gain
 from lmi.synthesis_request import Request
 from lmi.synthesis_riccati import central_gain, smallest_level
 
-__all__ = ["BACKOFF", "Judged", "cheapest", "find_gain", "shifted", "smallest_norm", "within"]
+__all__ = ["Judged", "find_gain", "shifted", "smallest_norm"]
 
 Matrix = NDArray[np.floating[Any]]
 
-BACKOFF = 4e-5
+BACKOFF = 8e-5
 """The norm asked of a gain exceeds the smallest one by this, relative: the smallest itself may need infinite gains."""
+
+BACKOFFS = (1e-2, 1e-1, 1.0)
+"""The same with a decay."""
+
+LOOSER = (1.1, 1.3, 2.0)
+"""Factors on a bound that is asked for besides a decay."""
 
 INSIDE = 1e-6
 """The norm asked of a gain is below the bound by this, relative, as room for rounding."""
@@ -63,23 +69,30 @@ def cheapest(plant: Plant, request: Request) -> Judged | None:
         gains = (Synthesis.of(plant, request.decay, *way).cheapest_gain() for way in COORDINATES)
     else:
         gains = iter((optimal_h2_gain(shifted(plant, request.decay)),))
-    return _first_that_meets(plant, request, gains)
+    return next(_meeting(plant, request, gains), None)
 
 
 def within(plant: Plant, request: Request) -> Judged | None:
-    """Return a gain that meets gamma and the decay, with a small bound of its covariance."""
+    """Return a gain that meets gamma and the decay, the one of least cost among those that the programs find."""
     gamma = (request.gamma or np.inf) * (1 - INSIDE)
-    found = _first_that_meets(plant, request, _within(plant, gamma, request.decay))
-    if found is not None:
-        return found
+    for way in COORDINATES if plant.n <= LARGEST else ():
+        synthesis = Synthesis.of(plant, request.decay, *way)
+        found = list(_meeting(plant, request, _within(synthesis, gamma, request.decay)))
+        if found:
+            return min(found, key=lambda judged: judged.achieved.cost)
+    central = _judged(plant, central_gain(shifted(plant, request.decay), gamma))
+    if central is not None and request.is_met(central.achieved):
+        return central
     smallest = smallest_norm(plant, request.decay)
     return smallest if smallest is not None and request.is_met(smallest.achieved) else None
 
 
-def _within(plant: Plant, gamma: float, decay: float | None) -> Iterator[Matrix | None]:
-    if plant.n <= LARGEST:
-        yield from (Synthesis.of(plant, decay, *way).gain_within(gamma) for way in COORDINATES)
-    yield central_gain(shifted(plant, decay), gamma)
+def _within(synthesis: Synthesis, gamma: float, decay: float | None) -> Iterator[Matrix | None]:
+    """Iterate over gains for gamma, with a decay also over those for looser bounds, whose norms may be far below."""
+    yield synthesis.gain_within(gamma)
+    if decay is not None:
+        yield synthesis.cheapest_gain()
+        yield from (synthesis.gain_within(gamma * looser) for looser in LOOSER)
 
 
 def smallest_norm(plant: Plant, decay: float | None) -> Judged | None:
@@ -87,28 +100,48 @@ def smallest_norm(plant: Plant, decay: float | None) -> Judged | None:
 
     Args:
         plant: V > 0, (A, C) detectable.
-        decay: rate, or None. With a decay the program is sufficient only, and other gains may have smaller norms.
+        decay: rate, or None. Where the gain of the smallest norm does not have it, other gains than those that share a
+            Lyapunov matrix with the norm may have smaller norms.
     """
+    free = _free(plant)
     request = Request("hinf", decay=decay)
+    return free if free is not None and request.is_met(free.achieved) else _decaying(plant, request)
+
+
+def _free(plant: Plant) -> Judged | None:
+    """Return the gain of the smallest norm: where program and norm agree that of the program, else the better one."""
     nothing = _judged(plant, np.zeros((plant.n, plant.l)))
-    if nothing is not None and nothing.norm == 0.0 and request.is_met(nothing.achieved):
+    if nothing is not None and nothing.norm == 0.0:
         return nothing
     best: Judged | None = None
     for way in COORDINATES if plant.n <= LARGEST else ():
-        synthesis = Synthesis.of(plant, decay, *way)
+        synthesis = Synthesis.of(plant, None, *way)
         level = synthesis.smallest_level()
-        if not level:
-            continue
-        best = _better(best, _judged(plant, synthesis.gain_within(level * (1 + BACKOFF))), request)
-        if best is not None and abs(best.norm / level - 1) <= 2 * BACKOFF:
+        best = _better(best, _judged(plant, synthesis.gain_within(level * (1 + BACKOFF))) if level else None)
+        if best is not None and level and abs(best.norm / level - 1) <= 2 * BACKOFF:
             return best
-    return _better(best, _smallest_by_riccati(plant, decay, best), request)
+    return _better(best, _central(plant, plant, best))
 
 
-def _smallest_by_riccati(plant: Plant, decay: float | None, best: Judged | None) -> Judged | None:
-    """Return the central gain near the smallest level; with a decay, near that of the shifted plant."""
-    moved = shifted(plant, decay)
-    reached = best if best is not None and decay is None else _judged(moved, optimal_h2_gain(moved))
+def _decaying(plant: Plant, request: Request) -> Judged | None:
+    """Return the gain of the smallest norm among some that have the decay.
+
+    The bound that the program gives is often above the norm, so that the gain for a looser bound may be better.
+    """
+    for way in COORDINATES if plant.n <= LARGEST else ():
+        synthesis = Synthesis.of(plant, request.decay, *way)
+        level = synthesis.smallest_level()
+        gains = (synthesis.gain_within(level * (1 + backoff)) for backoff in BACKOFFS) if level else iter(())
+        best = min(_meeting(plant, request, gains), key=lambda judged: judged.norm, default=None)
+        if best is not None:
+            return best
+    moved = _central(plant, shifted(plant, request.decay), None)
+    return moved if moved is not None and request.is_met(moved.achieved) else None
+
+
+def _central(plant: Plant, moved: Plant, best: Judged | None) -> Judged | None:
+    """Return the central gain near the smallest level of the plant, or of one that bounds it."""
+    reached = best or _judged(moved, optimal_h2_gain(moved))
     level = None if reached is None else smallest_level(moved, reached.norm * (1 + INSIDE))
     return None if level is None else _judged(plant, central_gain(moved, level * (1 + BACKOFF)))
 
@@ -129,16 +162,15 @@ def shifted(plant: Plant, decay: float | None) -> Plant:
     return replace(plant, A=plant.A / radius, C=plant.C / radius)
 
 
-def _better(best: Judged | None, other: Judged | None, request: Request) -> Judged | None:
-    """Return the one with the smaller norm among those that have the decay."""
-    if other is None or not request.is_met(other.achieved):
-        return best
-    return other if best is None or other.norm < best.norm else best
+def _better(best: Judged | None, other: Judged | None) -> Judged | None:
+    """Return the one with the smaller norm."""
+    return other if best is None or (other is not None and other.norm < best.norm) else best
 
 
-def _first_that_meets(plant: Plant, request: Request, gains: Iterator[Matrix | None]) -> Judged | None:
+def _meeting(plant: Plant, request: Request, gains: Iterator[Matrix | None]) -> Iterator[Judged]:
+    """Iterate over the gains that meet a request."""
     found = (_judged(plant, gain) for gain in gains)
-    return next((judged for judged in found if judged is not None and request.is_met(judged.achieved)), None)
+    return (judged for judged in found if judged is not None and request.is_met(judged.achieved))
 
 
 def _judged(plant: Plant, gain: Matrix | None) -> Judged | None:
