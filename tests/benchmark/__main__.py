@@ -5,10 +5,12 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 
 from tests.benchmark.certificates import certificates
 from tests.benchmark.claims import claims
 from tests.benchmark.enclosures import enclosures
+from tests.benchmark.page import write_page
 from tests.benchmark.prover import prover
 from tests.benchmark.scalar import scalar
 from tests.benchmark.startup import startup
@@ -28,8 +30,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure the sections asked for."""
     parser = argparse.ArgumentParser(prog="python -m tests.benchmark", description=__doc__)
     parser.add_argument("--only", action="append", choices=SECTIONS, metavar="SECTION", help=", ".join(SECTIONS))
-    chosen = parser.parse_args(arguments).only or list(SECTIONS)
-    results = {section: SECTIONS[section]() for section in chosen}
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write the tables into this page as well")
+    options = parser.parse_args(arguments)
+    results: dict[str, list[Row]] = {}
+    for section in options.only or SECTIONS:
+        results[section] = SECTIONS[section]()
+        if options.page is not None:
+            write_page(options.page, {section: results[section]})
     show(results)
     return 0 if all(row.ok for rows in results.values() for row in rows) else 1
 
