@@ -30,6 +30,8 @@ def certify_file(path: str, plant_path: str | None) -> Outcome:
     """
     data = read_json(path)
     is_design = isinstance(data, Mapping) and data.get("schema") == DESIGN
+    if is_design and data.get("certificate", "") is None:
+        return ["not certified: the design holds no certificate"], 3
     try:
         read = design_from_dict(data) if is_design else certificate_from_dict(data)
     except InputError as error:
