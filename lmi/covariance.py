@@ -39,7 +39,7 @@ class Solution:
     """An error covariance from a convex program, in the plant's units.
 
     Attributes:
-        outcome: of the call of the solver that gave it, or of the last one when none did.
+        outcome: of the call of the solver that gave it, or of Clarabel's last one when none did.
         P: error covariance (n, n), or None.
         gain: observer gain (n, l), or None.
         error: what P lacks (n, n), estimated by Newton steps, or None when P belongs to no stabilising gain.
@@ -55,6 +55,14 @@ class Solution:
     residual: float
     tried: tuple[tuple[str, Status], ...]
     seconds: float
+
+    @property
+    def status(self) -> str:
+        """What became of it, with the solver's name if it is not Clarabel."""
+        said, solver = self.outcome.status.value, self.outcome.solver
+        if solver == cp.CLARABEL:
+            return said
+        return f"{said}{',' if ':' in said else ':'} by {solver}, as CLARABEL did not reach {TRUSTED:.0e}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +132,8 @@ class _Search:
             if self.program is not None and self.reached(self.program.attainable):
                 return
             coordinates = self.improved(coordinates)
+        if {status for _, status in self.tried} <= {Status.UNBOUNDED, Status.INFEASIBLE}:
+            return
         for solver in FALLBACKS:
             if self.reached(TRUSTED):
                 return
@@ -135,8 +145,10 @@ class _Search:
         scaled = scaled_plant(self.plant, scaling)
         if self.program is None or not self.program.load(scaled):
             self.program = self.build(scaled)
-        self.last, answer = _called(self.program, scaled, accuracy, (scaling, self.common), solver)
-        self.tried.append((solver, self.last.status))
+        outcome, answer = _called(self.program, scaled, accuracy, (scaling, self.common), solver)
+        self.tried.append((solver, outcome.status))
+        if solver == cp.CLARABEL:
+            self.last = outcome
         if answer is not None and (self.best is None or answer.distance < self.best.distance):
             self.best = answer
 

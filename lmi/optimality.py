@@ -23,9 +23,10 @@ class Optimality:
         L(x; Z, y) = f(x) - sum tr(Z_k G_k(x)) + y'h(x)
 
     Attributes:
-        margin: smallest eigenvalue of a G_k(x) relative to its norm; negative when it fails.
+        margin: smallest eigenvalue of a G_k(x), relative to its norm or to its terms if they cancel; negative when it
+            fails.
         violation: largest entry of h(x), relative to the largest entry of a variable (at least 1).
-        dual_margin: smallest eigenvalue of a multiplier Z_k relative to its norm.
+        dual_margin: smallest eigenvalue of a multiplier Z_k, relative to the largest of them.
         stationarity: |dL/dx| relative to the norms of its terms.
         gap: |f(x) - L(0; Z, y)| / (1 + |f(x)|), between the primal and the dual value; it bounds how far f(x) is from
             its optimum when the other four are zero.
@@ -49,52 +50,87 @@ def optimality(problem: cp.Problem) -> Optimality:
     Args:
         problem: affine objective, equations and matrix inequalities, solved, all numbers finite.
     """
-    cones = [constraint for constraint in problem.constraints if isinstance(constraint, cp.PSD)]
+    objective, *constraints = terms = list(_terms(problem))
+    cones = [term for term in constraints if term.is_cone]
     equations = [constraint for constraint in problem.constraints if not isinstance(constraint, cp.PSD)]
-    sizes = [float(np.abs(np.asarray(variable.value)).max()) for variable in problem.variables()]
-    stationarity, gap = _dual_conditions(problem)
+    sizes = [float(np.abs(_column(variable.value)).max()) for variable in problem.variables()]
+    largest = max((float(np.abs(term.weight).max()) for term in cones), default=0.0)
+    stationarity, at_zero = _dual(problem, terms)
+    value = float(objective.weight @ objective.value)
     return Optimality(
-        margin=min((_least(constraint.args[0].value) for constraint in cones), default=np.inf),
+        margin=min((_least(term.value, term.size) for term in cones), default=np.inf),
         violation=float(max((np.max(x.violation()) for x in equations), default=0.0)) / max(1.0, *sizes),
-        dual_margin=min((_least(np.asarray(constraint.dual_value)) for constraint in cones), default=np.inf),
+        dual_margin=min((_least(-term.weight, largest) for term in cones), default=np.inf),
         stationarity=stationarity,
-        gap=gap,
+        gap=abs(value - at_zero) / (1.0 + abs(value)),
     )
 
 
-def _least(matrix: Vector) -> float:
-    """Return the smallest eigenvalue, relative to the largest in size."""
-    matrix = np.atleast_2d(matrix)
-    sizes = np.linalg.eigvalsh((matrix + matrix.T) / 2)
-    return float(sizes[0] / max(np.abs(sizes).max(), TINY))
+@dataclass(frozen=True, eq=False)
+class _Term:
+    """A term of the Lagrangian: a weight times an affine expression, as columns, and the latter's derivatives.
+
+    Attributes:
+        weight: minus the multiplier of a matrix inequality, that of an equation, +-1 for the objective.
+        value: of the expression.
+        parts: derivative by each variable, and the variable.
+        is_cone: whether it is a matrix inequality.
+    """
+
+    weight: Vector
+    value: Vector
+    parts: list[tuple[cp.Variable, Any]]
+    is_cone: bool = False
+
+    @property
+    def size(self) -> float:
+        """The largest entry that a variable contributes to the value."""
+        sizes = [np.abs(_applied(part, _column(x.value), transposed=True)).max() for x, part in self.parts]
+        return float(max(sizes, default=0.0))
 
 
-def _dual_conditions(problem: cp.Problem) -> tuple[float, float]:
-    """Return |dL/dx| relative to its terms, and the relative difference of the primal and the dual value."""
-    gradients = {variable: np.zeros(variable.size) for variable in problem.variables()}
-    scale, values = 0.0, list[float]()
-    for weight, expression in _terms(problem):
-        values.append(float(weight @ _column(expression.value)))
-        for variable, derivative in expression.grad.items():
-            part = derivative @ weight if getattr(derivative, "shape", ()) else derivative * weight  # a number if 1 x 1
-            gradients[variable] = gradients[variable] + part
-            scale = max(scale, float(np.linalg.norm(_free(variable, part))))
-    value = values[0]
-    at_zero = sum(values) - sum(float(g @ _column(variable.value)) for variable, g in gradients.items())
-    residual = max(float(np.linalg.norm(_free(variable, g))) for variable, g in gradients.items())
-    return residual / max(scale, TINY), abs(value - at_zero) / (1.0 + abs(value))
+def _terms(problem: cp.Problem) -> Iterator[_Term]:
+    """Iterate over the terms of the Lagrangian of the minimisation, the objective first."""
 
+    def term(weight: Vector, expression: Any, is_cone: bool = False) -> _Term:
+        return _Term(weight, _column(expression.value), list(expression.grad.items()), is_cone)
 
-def _terms(problem: cp.Problem) -> Iterator[tuple[Vector, Any]]:
-    """Iterate over the terms of the Lagrangian of the minimisation, as weights and affine expressions."""
-    sign = 1.0 if isinstance(problem.objective, cp.Minimize) else -1.0
-    yield np.array([sign]), problem.objective.args[0]
+    yield term(np.array([1.0 if isinstance(problem.objective, cp.Minimize) else -1.0]), problem.objective.args[0])
     for constraint in problem.constraints:
         multiplier = _column(constraint.dual_value)
         if isinstance(constraint, cp.PSD):
-            yield -multiplier, constraint.args[0]
+            yield term(-multiplier, constraint.args[0], True)
         else:
-            yield multiplier, constraint.args[0] - constraint.args[1]
+            yield term(multiplier, constraint.args[0] - constraint.args[1])
+
+
+def _dual(problem: cp.Problem, terms: list[_Term]) -> tuple[float, float]:
+    """Return |dL/dx| relative to its terms, and L(0), the dual value where dL/dx = 0."""
+    gradients = {variable: np.zeros(variable.size) for variable in problem.variables()}
+    scale = TINY
+    for term in terms:
+        for variable, derivative in term.parts:
+            part = _applied(derivative, term.weight)
+            gradients[variable] = gradients[variable] + part
+            scale = max(scale, float(np.linalg.norm(_free(variable, part))))
+    lagrangian = sum(float(term.weight @ term.value) for term in terms)
+    at_zero = lagrangian - sum(float(gradient @ _column(x.value)) for x, gradient in gradients.items())
+    return max(float(np.linalg.norm(_free(x, gradient))) for x, gradient in gradients.items()) / scale, at_zero
+
+
+def _least(column: Vector, size: float) -> float:
+    """Return the smallest eigenvalue, relative to the largest in size, or to a size if that is larger."""
+    n = round(len(column) ** 0.5)
+    matrix = column.reshape(n, n)
+    eigenvalues = np.linalg.eigvalsh((matrix + matrix.T) / 2)
+    return float(eigenvalues[0] / max(np.abs(eigenvalues).max(), size, TINY))
+
+
+def _applied(derivative: Any, vector: Vector, *, transposed: bool = False) -> Vector:
+    """Return the product of a derivative, a number when it is 1 x 1, with a vector."""
+    if not getattr(derivative, "shape", ()):
+        return derivative * vector
+    return (derivative.T if transposed else derivative) @ vector
 
 
 def _column(value: Any) -> Vector:

@@ -44,7 +44,7 @@ class Status(Enum):
     INACCURATE = "inaccurate: the numbers returned do not solve the program"
     INFEASIBLE = "infeasible: no numbers satisfy the constraints"
     UNBOUNDED = "unbounded: the objective has no limit"
-    ROUGH = "rough: the solver is of first order, its digits are not to be trusted"
+    ROUGH = "inaccurate: the solver is of first order, its numbers are only rough"
     STOPPED = "stopped: limit of time or iterations reached"
     FAILED = "failed: the solver returned no numbers"
 
@@ -88,7 +88,8 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT, solv
     """Call the solver once and judge the numbers that it leaves in the program's variables.
 
     Clarabel's chordal decomposition is off: the programs are dense, and it would only add a transformation to trust.
-    CVXPY's warnings are kept from the user; the outcome says what they would.
+    CVXPY's warnings are kept from the user; the outcome says what they would. A warm start would keep the scaling that
+    suited the data before.
 
     Args:
         program: its parameters set.
@@ -100,7 +101,7 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT, solv
         warnings.simplefilter("ignore")
         try:
             with _panics_as_errors():
-                problem.solve(solver=solver, **_OPTIONS[solver](accuracy))
+                problem.solve(solver=solver, warm_start=False, **_OPTIONS[solver](accuracy))
         except cp.SolverError as error:
             return Outcome(Status.FAILED, str(error).split(".")[0], solver=solver)
         except _BREAKDOWNS as error:

@@ -1,7 +1,7 @@
 """What every convex program hands to the solver: the problem, its data as parameters, and where its answer will be."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import cvxpy as cp
@@ -76,13 +76,19 @@ class SymmetricMap:
 
 
 def _full(plant: Plant) -> Plant:
-    """Return a plant of the shape without any zeros or cancellation, by which the pattern is found."""
-    from dataclasses import replace
-
+    """Return a plant of the shape without zeros and with noise of full rank, by which the pattern is found."""
     rng = np.random.default_rng(0)
-    names = ("A", "C", "W", "V", "N")
-    full = {name: 1.0 + rng.random(getattr(plant, name).shape) for name in names}
-    return replace(plant, **{**full, "V": full["V"] + full["V"].T + 9.0 * np.eye(plant.l)})
+    n, size = plant.n, plant.n + plant.l
+    root = 1.0 + rng.random((size, size))
+    noise = root @ root.T
+    return replace(
+        plant,
+        A=1.0 + rng.random((n, n)),
+        C=1.0 + rng.random((plant.l, n)),
+        W=noise[:n, :n],
+        V=noise[n:, n:],
+        N=noise[:n, n:],
+    )
 
 
 def packed(P: Matrix) -> Matrix:

@@ -2,23 +2,30 @@
 
 from dataclasses import replace
 
+import cvxpy as cp
 import numpy as np
 import pytest
 
+from derive.errors import InputError
+from derive.numeric.filter_form import filter_covariance, filter_gain
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi import residual
 from lmi.covariance import covariance_error, solve_covariance
+from lmi.programs.filter_form import filter_form, filter_plant
 from lmi.programs.h2 import h2
+from lmi.programs.information import information
 from lmi.programs.observer import factor
-from lmi.programs.optimal_covariance import optimal_covariance, riccati_inequality
+from lmi.programs.optimal_covariance import optimal_covariance, riccati_inequality, riccati_map
 from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
+from lmi.programs.program import SymmetricMap, packed, unpacked
 from lmi.residual import gain_covariance, newton_error, optimal_gain, riccati_residual
 from lmi.scaling import balanced, recentred, scaled_plant
 from lmi.solve import Status, solve_program
 
 PROGRAMS = (optimal_covariance, optimal_covariance_dual, h2)
 TIMES = ("continuous", "discrete")
+EVERY = [(time, build) for time in TIMES for build in (*PROGRAMS, information)] + [("discrete", filter_form)]
 
 
 def scalar_covariance(time, A, C, W, V):
@@ -207,3 +214,134 @@ def test_factor_has_the_rank_of_the_covariance():
     assert factor(G @ G.T).shape == (2, 1)
     np.testing.assert_allclose(factor(G @ G.T) @ factor(G @ G.T).T, G @ G.T, atol=1e-15)
     np.testing.assert_array_equal(factor(np.zeros((2, 2))), np.zeros((2, 1)))
+
+
+@pytest.mark.parametrize("n", [1, 2, 5, 8])
+@pytest.mark.parametrize("time", TIMES)
+def test_information_is_the_inverse_of_the_covariance(time, n, random_plant):
+    plant = random_plant(time, n)
+    riccati, solution = solve_riccati(plant), solve_covariance(plant, information)
+    assert solution.outcome.status is Status.SOLVED
+    assert np.linalg.norm(solution.P - riccati.P) < 1e-7 * np.linalg.norm(riccati.P)
+    assert np.linalg.norm(solution.gain - riccati.gain) < 1e-6 * np.linalg.norm(riccati.gain)
+
+
+@pytest.mark.filterwarnings("ignore:Reading from a sparse CVXPY expression")
+@pytest.mark.parametrize("time", TIMES)
+def test_covariances_of_gains_are_feasible_in_information_form_and_smaller_ones_are_not(time, random_plant):
+    """By brute force: the inequality at P_L^-1 for random stabilising gains, and just outside of it."""
+    plant = random_plant(time, 4)
+    program, optimum = information(plant), solve_riccati(plant)
+    rng = np.random.default_rng(0)
+    (x,) = program.problem.variables()
+    inequality = program.problem.constraints[0].args[0]
+
+    def least(P):
+        x.value = packed(np.linalg.inv(P))
+        return np.linalg.eigvalsh(inequality.value)[0]
+
+    for _ in range(10):
+        upper = gain_covariance(plant, optimum.gain + 0.05 * rng.standard_normal(optimum.gain.shape))
+        assert upper is not None
+        assert least(upper) > -1e-12
+    assert least(0.99 * optimum.P) < -1e-4
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_information_without_bound_where_the_covariance_is_singular(time):
+    A = [[0.5, 0.0], [0.0, 2.0]] if time == "discrete" else [[-0.5, 0.0], [0.0, 2.0]]
+    plant = plant_from_mapping({"time": time, "A": A, "C": [[1.0, 1.0]], "W": np.zeros((2, 2)), "V": 1.0})
+    solution = solve_covariance(plant, information)
+    assert solution.outcome.status is Status.UNBOUNDED
+    assert solution.P is None
+
+
+@pytest.mark.parametrize("n", [1, 2, 5, 8])
+def test_filter_form_is_the_covariance_after_the_measurement(n, random_plant):
+    plant = random_plant("discrete", n)
+    riccati, solution = solve_riccati(plant), solve_covariance(plant, filter_form)
+    assert solution.outcome.status is Status.SOLVED
+    assert np.linalg.norm(solution.P - riccati.P) < 1e-7 * np.linalg.norm(riccati.P)
+    assert np.linalg.norm(solution.gain - riccati.gain) < 1e-6 * np.linalg.norm(riccati.gain)
+    program = filter_form(plant)
+    assert solve_program(program).status is Status.SOLVED
+    (x,) = program.problem.variables()
+    filtered = filter_covariance(plant, riccati.P)
+    assert np.linalg.norm(unpacked(x.value, n) - filtered) < 1e-5 * np.linalg.norm(filtered)
+
+
+def test_predictor_of_the_filter_plant_is_the_filter(random_plant):
+    plant = random_plant("discrete", 5)
+    P, other = solve_riccati(plant).P, solve_riccati(filter_plant(plant))
+    np.testing.assert_allclose(other.P, filter_covariance(plant, P), rtol=1e-9, atol=1e-11)
+    np.testing.assert_allclose(other.gain, filter_gain(plant, P), rtol=1e-9, atol=1e-11)
+
+
+def test_filter_covariance_is_where_its_recursion_ends(random_plant):
+    """Predict and correct, step by step, from a covariance far away."""
+    plant = random_plant("discrete", 3)
+    P = 50.0 * np.eye(3)
+    for _ in range(300):
+        innovation = plant.C @ P @ plant.C.T + plant.V
+        cross = plant.A @ P @ plant.C.T + plant.N
+        filtered = P - P @ plant.C.T @ np.linalg.inv(innovation) @ plant.C @ P
+        P = plant.A @ P @ plant.A.T + plant.W - cross @ np.linalg.inv(innovation) @ cross.T
+    np.testing.assert_allclose(solve_riccati(filter_plant(plant)).P, filtered, rtol=1e-9, atol=1e-11)
+
+
+def test_filter_form_of_a_continuous_plant_is_refused():
+    with pytest.raises(InputError, match='time: expected "discrete"'):
+        filter_form(example_plant())
+
+
+def compiled_form(program):
+    """What CVXPY compiles the problem to, which it keeps as long as it is valid."""
+    return program.problem.get_problem_data(cp.CLARABEL)[0]["param_prob"]
+
+
+@pytest.mark.filterwarnings("ignore:Reading from a sparse CVXPY expression")
+@pytest.mark.parametrize(("time", "build"), EVERY)
+def test_program_takes_new_data_without_compiling_and_answers_as_a_fresh_one(time, build, random_plant):
+    first, second = (random_plant(time, 4, seed) for seed in (0, 1))
+    program, fresh = build(first), build(second)
+    assert program.problem.is_dcp(dpp=True)
+    solve_program(program)
+    compiled = compiled_form(program)
+    assert program.load(second)
+    again, anew = solve_program(program), solve_program(fresh)
+    assert compiled_form(program) is compiled
+    assert again.status is anew.status is Status.SOLVED
+    for ours, theirs in zip(program.answer(), fresh.answer(), strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize(("time", "build"), EVERY)
+def test_program_does_not_load_a_plant_of_another_shape(time, build, random_plant):
+    plant = random_plant(time, 4)
+    program = build(plant)
+    other = "continuous" if time == "discrete" else "discrete"
+    assert not program.load(random_plant(time, 5))
+    assert not program.load(random_plant(other, 4))
+    solve_program(program)
+    P, known = program.answer()[0], solve_riccati(plant).P
+    assert np.linalg.norm(P - known) < 1e-5 * np.linalg.norm(known)
+
+
+@pytest.mark.parametrize("build", [h2, information])
+def test_program_does_not_load_noise_of_another_rank(build, random_plant):
+    plant = random_plant("continuous", 4)
+    program = build(plant)
+    assert not program.load(replace(plant, W=np.diag([1.0, 0, 0, 0]), N=np.zeros_like(plant.N)))
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_coefficients_are_the_map_and_its_adjoint(time, random_plant):
+    plant = random_plant(time, 4)
+    linear = SymmetricMap(plant, riccati_map, "F")
+    linear.load(plant)
+    K = linear.coefficients.value_sparse.toarray()
+    rng = np.random.default_rng(0)
+    P, Z = (X + X.T for X in (rng.standard_normal((4, 4)), rng.standard_normal((6, 6))))
+    image = riccati_map(plant, P)
+    np.testing.assert_allclose((K @ packed(P)).reshape(6, 6), image, atol=1e-13)
+    np.testing.assert_allclose(packed(P) @ (K.T @ Z.ravel()), np.trace(Z @ image), atol=1e-12)

@@ -8,12 +8,15 @@ import numpy as np
 import pytest
 
 from derive.numeric.plant import example_plant, plant_from_mapping
+from lmi import covariance
 from lmi.covariance import solve_covariance
+from lmi.optimality import optimality
 from lmi.programs.h2 import h2
 from lmi.programs.optimal_covariance import optimal_covariance
 from lmi.programs.optimal_covariance_dual import optimal_covariance_dual
 from lmi.programs.program import Program
 from lmi.solve import Accuracy, Status, solve_program
+from lmi.validation import validate
 
 PROGRAMS = (optimal_covariance, optimal_covariance_dual, h2)
 
@@ -134,3 +137,90 @@ def test_what_else_is_written_meanwhile_is_passed_on(error, monkeypatch, capfd):
         with pytest.raises(KeyboardInterrupt):
             solve_program(h2(example_plant()))
     assert capfd.readouterr().err == "progress\n"
+
+
+def scaled_multipliers(problem, factor):
+    for constraint in problem.constraints:
+        for dual in constraint.dual_variables:
+            dual.save_value(factor * np.asarray(dual.value))
+
+
+@pytest.mark.filterwarnings("ignore:Reading from a sparse CVXPY expression")
+@pytest.mark.parametrize("build", PROGRAMS)
+def test_gap_and_stationarity_are_of_the_returned_numbers(build):
+    program = build(example_plant())
+    solve_program(program)
+    assert optimality(program.problem).holds(1e-8)
+    scaled_multipliers(program.problem, 1.01)
+    found = optimality(program.problem)
+    assert found.stationarity > 1e-4
+    assert found.gap > 1e-4
+
+
+def test_gap_bounds_what_is_missing_to_the_optimum():
+    """min x + 2 y, x >= 1, y = 3, and a maximisation: by hand, away from the optimum."""
+    x, y = cp.Variable((1, 1), symmetric=True), cp.Variable()
+    problem = cp.Problem(cp.Minimize(x[0, 0] + 2 * y), [x - 1 >> 0, y == 3])
+    assert solve_program(Program("by hand", problem, lambda: NotImplemented)).status is Status.SOLVED
+    assert optimality(problem).gap < 1e-8
+    x.save_value(np.array([[2.0]]))
+    assert optimality(problem).gap == pytest.approx(1 / 9, rel=1e-6)
+    X = cp.Variable((2, 2), symmetric=True)
+    most = cp.Problem(cp.Maximize(X[0, 1]), [X >> 0, cp.trace(X) == 2])
+    assert solve_program(Program("most", most, lambda: NotImplemented)).status is Status.SOLVED
+    assert optimality(most).stationarity < 1e-8
+    X.save_value(np.eye(2))
+    assert optimality(most).gap == pytest.approx(1.0, rel=1e-6)
+
+
+@pytest.fixture
+def broken_clarabel(monkeypatch):
+    """Clarabel returns no numbers; the other solvers work."""
+    honest = cp.Problem.solve
+
+    def solve(self, *args, **kwargs):
+        if kwargs["solver"] == "CLARABEL":
+            raise cp.SolverError("Solver 'CLARABEL' failed.")
+        return honest(self, *args, **kwargs)
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+
+
+@pytest.mark.usefixtures("broken_clarabel")
+@pytest.mark.skipif("CVXOPT" not in cp.installed_solvers(), reason="CVXOPT is not installed")
+def test_cvxopt_takes_over_and_is_named():
+    solution = solve_covariance(example_plant(), optimal_covariance)
+    assert [solver for solver, _ in solution.tried] == ["CLARABEL"] * 3 + ["CVXOPT"]
+    assert solution.status == "solved: by CVXOPT, as CLARABEL did not reach 1e-07"
+    assert np.linalg.norm(solution.error) < 1e-7 * np.linalg.norm(solution.P)
+
+
+@pytest.mark.usefixtures("broken_clarabel")
+def test_scs_is_rough_and_never_trusted(monkeypatch):
+    monkeypatch.setattr(covariance, "FALLBACKS", ("SCS",))
+    solution = solve_covariance(example_plant(), optimal_covariance)
+    assert solution.outcome.status in (Status.ROUGH, Status.INACCURATE)
+    assert solution.status.startswith("inaccurate: ")
+    assert "by SCS" in solution.status
+    row = validate(example_plant()).route("lmi-primal")
+    assert "SCS" in row.status
+    assert not row.trusted
+    assert not row.agrees
+
+
+def test_a_breakdown_of_cvxopt_is_a_failure(monkeypatch):
+    def solve(self, *args, **kwargs):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr(cp.Problem, "solve", solve)
+    outcome = solve_program(h2(example_plant()), solver="CVXOPT")
+    assert (outcome.status, outcome.raw_status) == (Status.FAILED, "ZeroDivisionError: float division by zero")
+    with pytest.raises(ZeroDivisionError):
+        solve_program(h2(example_plant()))
+
+
+def test_coordinates_without_a_rough_covariance_come_from_the_cheapest_program(monkeypatch):
+    monkeypatch.setattr(covariance, "rough_covariance", lambda plant: None)
+    solution = solve_covariance(example_plant(), optimal_covariance_dual)
+    assert solution.status == "solved"
+    assert np.linalg.norm(solution.error) < 1e-9 * np.linalg.norm(solution.P)
