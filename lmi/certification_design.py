@@ -8,7 +8,7 @@ P_g comes from Newton's method started at 0, which rises to it whenever the norm
 trusted.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import exp, frexp, isfinite, nextafter
@@ -180,13 +180,13 @@ def _decay_witness(cost: Certificate, bound: Fraction) -> Decay:
         loop = coordinates.balls(cost.plant.loop(cost.gain), -1, 1)
         number = arb(fmpq(bound.numerator, bound.denominator))
         loop = loop + identity(loop.nrows()) * number if cost.plant.is_continuous else loop * (1 / number)
-        Y = solved(loop, identity(loop.nrows()), cost.plant.time)
+        Y = _witness(loop, identity(loop.nrows()), cost.plant.time)
         rate = max(binary_logarithm(Y[i, i]) for i in range(Y.nrows()))
         bits = max(0, sizes(loop) + rate) + SPARE
         return Decay(bound, coordinates.grid.covariance(Y * arb(2) ** -rate, bits))
 
 
-def solved(loop: arb_mat, S: arb_mat, time: Time) -> arb_mat:
+def _witness(loop: arb_mat, S: arb_mat, time: Time) -> arb_mat:
     """Return Y > 0 with loop Y + Y loop' + S = 0, in discrete time loop Y loop' - Y + S = 0.
 
     Raises:
@@ -260,7 +260,7 @@ def _norm_witness(plant: ExactPlant, cost: Certificate, gamma: Fraction, bits: i
         )
         P = equation.solution()
         loop = equation.closed_loop(P)
-        D = solved(loop, identity(P.nrows()), plant.time)
+        D = _witness(loop, identity(P.nrows()), plant.time)
         size = binary_logarithm(norm(D))
         k = margin + max(size, 2 * size + binary_logarithm(norm(equation.M)), 0)
         return Norm(gamma, coordinates.grid.covariance(P + D * arb(2) ** -k, k + sizes(loop) + margin))
@@ -304,7 +304,7 @@ class BoundedReal:
         n = self.loop.nrows()
         P, before = arb_mat(n, n), None
         for _ in range(STEPS):
-            D = solved_any(self.closed_loop(P), middle(self.residual(P)), self.time)
+            D = _lyapunov(self.closed_loop(P), middle(self.residual(P)), self.time)
             P, step = middle(P + D), norm(D)
             if before is not None and not step < before and step < norm(P) * arb(2) ** -60:
                 break
@@ -312,11 +312,8 @@ class BoundedReal:
         return P
 
 
-def solved_any(loop: arb_mat, S: arb_mat, time: Time) -> arb_mat:
+def _lyapunov(loop: arb_mat, S: arb_mat, time: Time) -> arb_mat:
     """Solve loop Y + Y loop' + S = 0, in discrete time loop Y loop' - Y + S = 0, for a stable loop."""
     if not is_stable(floats(loop), time):
         raise NotCertifiedError("the norm is not below gamma")
     return middle(lyapunov_in_balls(loop, S, time))
-
-
-Proposal = Callable[[], Norm]
