@@ -1,5 +1,7 @@
 """A stabilising observer gain without a Riccati equation: a linear equation moves only the modes that need it."""
 
+from itertools import product
+
 import numpy as np
 
 from derive.numeric.lyapunov import solve_lyapunov
@@ -12,11 +14,9 @@ MARGINS = (1e-6, 1e-10, 1e-14)
 """Modes are moved unless they are stable by more than this, relative to the size of F: a wide margin moves double modes
 on the boundary whole, a narrow one spares slow modes that are not seen."""
 
-SHIFT = 0.3
-"""Distance inside the boundary to which modes are moved, relative to the size of F or, if larger, C (continuous)."""
-
-RADIUS = 0.7
-"""Radius within which modes are moved (discrete)."""
+SHIFTS = (0.3, 0.1, 0.03, 0.01, 0.001)
+"""Distances inside the boundary to which modes are moved, relative to the size of F or, if larger, C, in discrete time
+relative to the circle; the next one is tried when numbers do not allow the last."""
 
 
 def stabilising_gain(F: Matrix, C: Matrix, time: Time) -> Matrix:
@@ -39,30 +39,30 @@ def stabilising_gain(F: Matrix, C: Matrix, time: Time) -> Matrix:
         linear continuous constant systems, IEEE Trans. Automat. Control 20 (1975) 153-154.
     """
     with np.errstate(all="ignore"):
-        for rtol in MARGINS:
-            gain = _gain(F, C, time, rtol)
+        for shift, rtol in product(SHIFTS, MARGINS):
+            gain = _gain(F, C, time, rtol, shift)
             if np.isfinite(gain).all() and np.all(distance_to_stability(np.linalg.eigvals(F - gain @ C), time) < 0):
                 return gain
     return np.full((len(F), len(C)), np.nan)
 
 
-def _gain(F: Matrix, C: Matrix, time: Time, rtol: float) -> Matrix:
+def _gain(F: Matrix, C: Matrix, time: Time, rtol: float, shift: float) -> Matrix:
     rate = max(spectral_scale(F, time), float(np.linalg.norm(C, 2)))
     try:
         basis, rows = _part_to_move(F, time, rtol)
         if basis.shape[1] == 0:
             return np.zeros((len(F), len(C)))
-        return basis @ _moving_gain(rows @ F @ basis, C @ basis, rate, time)
+        return basis @ _moving_gain(rows @ F @ basis, C @ basis, shift * rate if time == "continuous" else shift, time)
     except np.linalg.LinAlgError:
         return np.full((len(F), len(C)), np.nan)
 
 
-def _moving_gain(T: Matrix, G: Matrix, rate: float, time: Time) -> Matrix:
-    """Return the gain that moves all modes of T, seen through G."""
+def _moving_gain(T: Matrix, G: Matrix, shift: float, time: Time) -> Matrix:
+    """Return the gain that moves all modes of T, seen through G, by so much inside the boundary."""
     if time == "continuous":
-        Y = solve_lyapunov(-(T + SHIFT * rate * np.eye(len(T))).T, 2 * G.T @ G, time)
+        Y = solve_lyapunov(-(T + shift * np.eye(len(T))).T, 2 * G.T @ G, time)
         return np.linalg.solve(Y, G.T)
-    S = np.linalg.inv(T / RADIUS)
+    S = np.linalg.inv(T / (1 - shift))
     Y = solve_lyapunov(S.T, S.T @ G.T @ G @ S, time)
     YG = np.linalg.solve(Y, G.T)
     return T @ YG @ np.linalg.inv(G @ YG + np.eye(len(G)))
