@@ -58,7 +58,8 @@ def closed_ball(plant: Plant, start: Matrix | None, digits: int) -> Closed:
         if found.digits >= digits:
             break
         bits *= 2
-        found = _attempt(plant, start if found.digits else None, bits, in_balls=True)
+        proved = found.proof.radius is not None
+        found = _attempt(plant, start if proved else None, bits, in_balls=not proved)
     return found
 
 

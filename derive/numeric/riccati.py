@@ -33,6 +33,9 @@ DIGITS = 20
 LARGEST = 64
 """States up to which it takes a second or so."""
 
+NAMED = 4
+"""Modes named in a reason."""
+
 NEAR_RTOL = 1e-6
 """Distance of a mode from the boundary, relative to A, within which it is named as near."""
 
@@ -133,7 +136,7 @@ def _in_extended_precision(plant: Plant, whole: NormalForm, slack: float) -> Ric
     sense = sensitivity(part, found, _correlation(plant))
     U = boundary.kept if len(boundary.modes) else np.eye(len(part.A))
     P = U @ found.P @ U.T
-    residual = Candidate.of(whole, P).residual
+    residual = Candidate.of(whole, P).residual if len(boundary.modes) else found.residual
     modes = np.linalg.eigvals(found.closed_loop) if found.finite else np.full(len(part.A), np.nan)
     modes = np.concatenate([modes.astype(complex), boundary.modes])
     covariance = whole.unscaled(P)
@@ -185,7 +188,8 @@ def _in_high_precision(plant: Plant, whole: NormalForm, start: RiccatiSolution) 
 
 def _failed(plant: Plant, solution: RiccatiSolution) -> RiccatiSolution:
     """Return the solution with its status and the reason why it is none."""
-    modes = ", ".join(dict.fromkeys(map(format_mode, solution.near_boundary)))
+    near = list(dict.fromkeys(map(format_mode, solution.near_boundary)))
+    modes = ", ".join(near[:NAMED]) + (f" and {len(near) - NAMED} more" if len(near) > NAMED else "")
     hidden = undetectable_mode(plant.A, plant.C, plant.time)
     if hidden is not None:
         reason = f"(A, C): expected detectable, got mode {format_mode(hidden)} unobservable"

@@ -11,18 +11,24 @@ from tests.benchmark.certificates import certificates
 from tests.benchmark.claims import claims
 from tests.benchmark.enclosures import enclosures
 from tests.benchmark.page import write_page
+from tests.benchmark.programs import programs
 from tests.benchmark.prover import prover
+from tests.benchmark.riccati import riccati
 from tests.benchmark.scalar import scalar
 from tests.benchmark.startup import startup
 from tests.benchmark.table import Row
+from tests.benchmark.validate import validate
 
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "certificates": certificates,
     "claims": claims,
     "enclosures": enclosures,
+    "programs": programs,
     "prover": prover,
+    "riccati": riccati,
     "scalar": scalar,
     "startup": startup,
+    "validate": validate,
 }
 
 

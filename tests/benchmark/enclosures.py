@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
@@ -14,6 +12,7 @@ from derive.numeric.enclosure import RiccatiEnclosure, enclose_riccati
 from derive.numeric.log_det import LogDetEnclosure, enclose_by_eigenvalues, enclose_log_det
 from derive.numeric.plant import Plant
 from derive.numeric.spectrum import output_error_integral
+from tests.benchmark.published import COLLECTIONS, Collection, Example, published
 from tests.benchmark.table import Row
 from tests.derive.numeric.plants import random_plant
 from tests.derive.numeric.test_log_det import chain
@@ -75,41 +74,33 @@ def _row(name: str, seconds: float, found: Result, limit: float, holds: bool) ->
 
 def _collections() -> list[Row]:
     """Return one row a collection, if the environment variable DERIVE_BENCH names a folder of them."""
-    folder = os.environ.get("DERIVE_BENCH")
-    return (
-        [_collection(Path(folder, name), time) for name, time in zip(("carex", "darex"), TIMES, strict=True)]
-        if folder
-        else []
-    )
+    return [_collection(name) for name in COLLECTIONS if any(published(name))]
 
 
-def _collection(folder: Path, kind: str) -> Row:
+def _collection(name: Collection) -> Row:
     verified, wrong, refused, start = 0, [], [], time.perf_counter()
-    for path in sorted(folder.glob("*.npz")):
-        data = dict(np.load(path))
-        n, l = data["B"].shape  # noqa: E741
-        if n > COLLECTED or np.linalg.eigvalsh(data["R"])[0] < 1e-14:
+    for example in published(name):
+        plant = example.plant
+        if plant.n > COLLECTED or np.linalg.eigvalsh(plant.V)[0] < 1e-14:
             continue
-        cross = data["S"] if data["S"].size else np.zeros((n, l))
-        plant = Plant(time=kind, A=data["A"].T, C=data["B"].T, W=data["Q"], V=data["R"], N=cross, M=np.eye(n))  # type: ignore[arg-type]
         found = enclose_riccati(plant, DIGITS)
         if found.P is None:
-            refused.append(path.stem)
-        elif _near(found, data) and found.output_cost.overlaps(enclose_log_det(plant, DIGITS).value):
+            refused.append(example.name)
+        elif _near(found, example) and found.output_cost.overlaps(enclose_log_det(plant, DIGITS).value):
             verified += 1
         else:
-            wrong.append(path.stem)
+            wrong.append(example.name)
     seconds = time.perf_counter() - start
-    known = [name for name in refused if name != "carex_2_5"]  # its closed loop is on the boundary
+    known = [other for other in refused if other != "carex_2_5"]  # its closed loop is on the boundary
     value = f"{verified} verified, refused {refused or 'none'}, wrong {wrong or 'none'}, {seconds:.0f} s"
-    return Row(f"{folder.name}, n <= {COLLECTED}", value, "all but carex_2_5, none wrong", not wrong and not known)
+    return Row(f"{name}, n <= {COLLECTED}", value, "all but carex_2_5, none wrong", not wrong and not known)
 
 
-def _near(found: RiccatiEnclosure, data: dict[str, np.ndarray]) -> bool:
+def _near(found: RiccatiEnclosure, example: Example) -> bool:
     """Tell whether the enclosure is where the collection's double-double solution is."""
     assert found.P is not None
-    if not data["X_hp"].size:
+    if example.truth is None or example.rest is None:
         return True
     with working_bits(300):
-        distance = norm(found.P.mid() - exact(data["X_hp"]) - exact(data["X_hp_lo"]))
+        distance = norm(found.P.mid() - exact(example.truth) - exact(example.rest))
         return bool(distance <= NEAR * norm(found.P.mid()))

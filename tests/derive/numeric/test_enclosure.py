@@ -3,7 +3,6 @@
 import os
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -30,6 +29,7 @@ from derive.numeric.modes import format_mode
 from derive.numeric.newton import Equation, lyapunov_in_balls, prove, refined
 from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
+from tests.benchmark.published import COLLECTIONS, published
 from tests.derive.numeric import references
 from tests.derive.numeric.plants import OSCILLATOR, STABILISING, STRONG, continuous, discrete, random_plant
 
@@ -272,24 +272,38 @@ def test_helpers():
         assert digits_of(arb(10), arb(1)) == 0
         assert digits_of(arb("nan"), arb(1)) == 0
         assert digits_of(arb(0), arb(1)) == 38
+    with working_bits(2000):
+        assert digits_of(arb(1) / 7, arb(10) ** 400) == 400
 
 
 @pytest.mark.skipif("DERIVE_BENCH" not in os.environ, reason="set DERIVE_BENCH to a folder of CAREX and DAREX archives")
-@pytest.mark.parametrize(("collection", "time"), [("carex", "continuous"), ("darex", "discrete")])
-def test_published_collections(collection, time):
-    for path in sorted(Path(os.environ["DERIVE_BENCH"], collection).glob("*.npz")):
-        data = dict(np.load(path))
-        n, l = data["B"].shape  # noqa: E741
-        if not data.get("X_hp", np.zeros(0)).size or n > 40 or np.linalg.eigvalsh(data["R"])[0] < 1e-14:
+@pytest.mark.parametrize("collection", COLLECTIONS)
+def test_published_collections(collection):
+    for example in published(collection):
+        if example.truth is None or example.plant.n > 40 or np.linalg.eigvalsh(example.plant.V)[0] < 1e-14:
             continue
-        cross = data["S"] if data["S"].size else np.zeros((n, l))
-        plant = Plant(time=time, A=data["A"].T, C=data["B"].T, W=data["Q"], V=data["R"], N=cross, M=np.eye(n))
-        enclosure = enclose_riccati(plant, digits=20)
+        enclosure = enclose_riccati(example.plant, digits=20)
         P = enclosure.P
-        assert P is not None, path.stem
+        assert P is not None, example.name
         with working_bits(HIGH):
-            distance = norm(P.mid() - exact(data["X_hp"]) - exact(data["X_hp_lo"]))
-            assert distance <= enclosure.radius + 1e-30 * norm(P.mid()), path.stem
+            distance = norm(P.mid() - exact(example.truth) - exact(example.rest))
+            assert distance <= enclosure.radius + 1e-30 * norm(P.mid()), example.name
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_the_gain_and_the_distance_of_any_matrix(time):
+    plant = random_plant(time, 4, 2, seed=3)
+    enclosure = enclose_riccati(plant)
+    P = references.reference(plant, enclosure.centre)
+    A, C, V, N = (exact(X) for X in (plant.A, plant.C, plant.V, plant.N))
+    with working_bits(HIGH):
+        PC, S = P * C.transpose(), V if time == "continuous" else C * P * C.transpose() + V
+        L = ((PC if time == "continuous" else A * PC) + N) * S.inv()
+        assert all(ours.overlaps(true) for ours, true in zip(enclosure.gain.entries(), L.entries(), strict=True))
+    moved = enclosure.centre + 1e-3 * np.eye(4)
+    assert enclosure.distance(moved) == pytest.approx(2e-3, rel=1e-9)
+    assert enclosure.solution.condition > 1
+    assert verify_riccati(plant, moved + 1e9).distance(moved) == np.inf
 
 
 def test_oscillator_with_weak_noise():
