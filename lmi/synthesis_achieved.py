@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.lyapunov import error_covariance
-from derive.numeric.modes import distance_to_stability
+from derive.numeric.modes import distance_to_stability, spectral_scale
 from derive.numeric.norms import HInfNorm, hinf_norm
 from derive.numeric.plant import Plant
 from lmi.programs.observer import factor
@@ -47,7 +47,7 @@ def achieved(plant: Plant, gain: Matrix) -> Achieved | None:
         gain: L (n, l).
 
     Returns:
-        The values, or None when A - L C is not asymptotically stable.
+        The values, or None when A - L C is not asymptotically stable by more than rounding.
 
     Example:
         >>> from derive.numeric.plant import example_plant
@@ -60,7 +60,7 @@ def achieved(plant: Plant, gain: Matrix) -> Achieved | None:
     loop = plant.A - gain @ plant.C
     modes = np.linalg.eigvals(loop)
     distance = distance_to_stability(modes, plant.time)
-    if not np.all(distance < 0):
+    if not np.all(distance < -plant.n * np.finfo(float).eps * spectral_scale(loop, plant.time)):
         return None
     P = error_covariance(plant.A, plant.C, plant.W, plant.V, plant.N, gain, plant.time)
     cost = max(float(np.trace(plant.M @ P)), 0.0)

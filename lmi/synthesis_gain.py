@@ -20,6 +20,7 @@ from lmi.residual import gain_covariance, optimal_gain
 from lmi.scaling import Scaling, balanced, recentred, scaled_plant
 from lmi.solve import Accuracy, Outcome, Status, solve_program
 from lmi.synthesis_achieved import radius_of
+from lmi.synthesis_riccati import central_gain, smallest_level
 
 __all__ = ["COORDINATES", "Synthesis", "optimal_h2_gain"]
 
@@ -41,8 +42,11 @@ SLACK = 1e-6
 LIGHT = 1e-6
 """Weight of states that the cost does not see, relative to those that it does, so that their gain is determined."""
 
-EXCITED = (0.0, 1e-9, 1e-6, 1e-3)
+EXCITED = (1e-12, 1e-10, 1e-8, 1e-6, 1e-4, 1e-2)
 """Noise added, relative to the states' size, where the optimal gain leaves modes on the boundary of stability."""
+
+GENERAL = 20
+"""States up to which a general solver solves the covariance program."""
 
 NEWTON_STEPS = 6
 
@@ -66,19 +70,17 @@ class Synthesis:
     specifications: tuple[Specification, ...]
 
     @classmethod
-    def of(cls, plant: Plant, decay: float | None, faint: float, widest: float) -> "Synthesis":
+    def of(cls, plant: Plant, decay: float | None, faint: float | None, widest: float) -> "Synthesis":
         """Choose the coordinates.
 
         Args:
             plant: V > 0, (A, C) detectable.
             decay: rate [1/s] at which every mode has to fall, in discrete time [1/step] without dt, or None.
-            faint: noise added for choosing them, relative to the states' size.
+            faint: noise added for choosing them, relative to the states' size; None for balancing only.
             widest: bound of X in them.
         """
         common = balanced(plant)
-        scaled = scaled_plant(plant, common)
-        known = solve_riccati(replace(scaled, W=scaled.W + faint * np.eye(plant.n)))
-        scaling = common if known.status == "failed" else recentred(plant, common, known.P, 0.0)
+        scaling = common if faint is None else _centred(plant, common, faint)
         M = scaling.T.T @ plant.M @ scaling.T
         size = float(np.linalg.norm(M, 2)) or 1.0
         scaled = replace(scaled_plant(plant, scaling), M=(M + M.T) / (2 * size))
@@ -106,6 +108,16 @@ class Synthesis:
         size, bound = cost_bound(unknowns, np.eye(self.plant.n))
         return self._gain(self._program("small covariance", unknowns, size, [*constraints, *bound]))
 
+    def central_gain(self, gamma: float) -> Matrix | None:
+        """Return the central gain by its Riccati equation; None where there is none. No decay is looked at."""
+        gain = central_gain(self.plant, gamma / self.unit)
+        return None if gain is None else self.scaling.gain(gain)
+
+    def central_level(self, reached: float) -> float | None:
+        """Return the smallest norm by the Riccati equation, below one that is reached; None where it has none."""
+        level = smallest_level(self.plant, reached / self.unit)
+        return None if level is None else self.unit * level
+
     def cheapest_gain(self) -> Matrix | None:
         """Return the gain with the smallest bound of tr(M P)."""
         unknowns = Unknowns.of(self.plant)
@@ -131,6 +143,13 @@ class Synthesis:
         return gain if np.isfinite(gain).all() else None
 
 
+def _centred(plant: Plant, common: Scaling, faint: float) -> Scaling:
+    """Return coordinates in which the covariance with a little more noise is the identity."""
+    scaled = scaled_plant(plant, common)
+    known = solve_riccati(replace(scaled, W=scaled.W + faint * np.eye(plant.n)))
+    return common if known.status == "failed" else recentred(plant, common, known.P, 0.0)
+
+
 def _scaled_decay(plant: Plant, scaling: Scaling, decay: float) -> float:
     """Return the rate in the coordinates' unit of time, in discrete time the radius, a little stricter than asked."""
     if plant.is_continuous:
@@ -151,21 +170,30 @@ def _solved(program: Program) -> Outcome:
 def optimal_h2_gain(plant: Plant) -> Matrix | None:
     """Return the gain with the least covariance: the dual program's, improved by Newton steps.
 
-    Where the optimal gain leaves modes on the boundary of stability, a little noise is added until it does not.
+    Where that gain leaves modes on the boundary of stability, no stabilising gain is optimal; the one for a little more
+    noise is returned.
 
     Args:
         plant: V > 0, (A, C) detectable.
     """
     common = balanced(plant)
     scaled = scaled_plant(plant, common)
-    for size in EXCITED:
-        excited = replace(scaled, W=scaled.W + size * np.eye(plant.n))
-        gain = solve_covariance(excited, optimal_covariance_dual).gain
-        if gain is not None:
-            gain = _improved(excited, gain)
-        if gain is not None:
-            return common.gain(gain)
-    return None
+    gain = _program_gain(scaled)
+    gain = None if gain is None else _improved(scaled, gain)
+    if gain is None:
+        excited = (solve_riccati(replace(scaled, W=scaled.W + size * np.eye(plant.n))) for size in EXCITED)
+        near = (solution.gain for solution in excited if solution.status == "stabilising")
+        gain = next((gain for gain in near if gain_covariance(scaled, gain) is not None), None)
+    return None if gain is None else common.gain(gain)
+
+
+def _program_gain(plant: Plant) -> Matrix | None:
+    """Return the gain of the dual program, for large plants from the method made for it."""
+    if plant.n <= GENERAL:
+        return solve_covariance(plant, optimal_covariance_dual).gain
+    from lmi.interior_point import solve_interior_point
+
+    return solve_interior_point(plant).gain
 
 
 def _improved(plant: Plant, gain: Matrix) -> Matrix | None:

@@ -1,6 +1,7 @@
 """Proofs about a request: that a gain meets it and is best, or that no gain can meet it."""
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from derive.numeric.modes import format_mode, undetectable_mode
@@ -21,6 +22,9 @@ GAP = 9.5e-5
 MARGIN = 1e-6
 """The certified bound of a norm exceeds the computed one by this, relative, as room for the certificate's rounding."""
 
+
+EXCESS = 1e-4
+"""Part of the cost by which it may exceed the least possible, where the least is asked for."""
 
 SHARP = 2.2e-4
 """A floor is looked for from here below the smallest norm found, relative."""
@@ -49,9 +53,22 @@ def certify(plant: Plant, request: Request, found: Judged) -> tuple["DesignCerti
         except NotCertifiedError as error:
             problems.append(str(error))
             continue
-        lacking = request.objective == "hinf" and problems
-        return certificate, problems[0] if lacking else ""
+        if request.objective == "hinf":
+            return certificate, problems[0] if problems else ""
+        return certificate, "" if request.decay is not None else _excess(certificate, found)
     return None, problems[0]
+
+
+def _excess(certificate: "DesignCertificate", found: Judged) -> str:
+    """Say by how much the cost may exceed the least possible, if that is not negligible."""
+    from lmi.certificate_design import verify_design
+    from lmi.certificate_report import at_most
+
+    bounds = verify_design(certificate)[1]
+    cost = None if bounds is None else bounds.cost.cost
+    if cost is None or found.achieved.cost == 0.0 or cost.width <= Fraction(EXCESS) * cost.upper:
+        return ""
+    return f"the cost may exceed the least possible by the relative {at_most(cost.width / cost.upper, 3)}"
 
 
 def _floor(plant: Plant, request: Request, found: Judged) -> float | None:

@@ -11,7 +11,6 @@ from derive.numeric.plant import Plant
 from lmi.synthesis_achieved import Achieved, achieved, radius_of
 from lmi.synthesis_gain import COORDINATES, Synthesis, optimal_h2_gain
 from lmi.synthesis_request import Request
-from lmi.synthesis_riccati import central_gain, smallest_level
 
 __all__ = ["Judged", "find_gain", "shifted", "smallest_norm"]
 
@@ -29,7 +28,7 @@ LOOSER = (1.1, 1.3, 2.0)
 INSIDE = 1e-6
 """The norm asked of a gain is below the bound by this, relative, as room for rounding."""
 
-LARGEST = 14
+LARGEST = 12
 """States up to which convex programs give the gain; Riccati equations are quicker from there on."""
 
 
@@ -80,7 +79,8 @@ def within(plant: Plant, request: Request) -> Judged | None:
         found = list(_meeting(plant, request, _within(synthesis, gamma, request.decay)))
         if found:
             return min(found, key=lambda judged: judged.achieved.cost)
-    central = _judged(plant, central_gain(shifted(plant, request.decay), gamma))
+    moved = _balanced(shifted(plant, request.decay))
+    central = _judged(plant, moved.central_gain(gamma))
     if central is not None and request.is_met(central.achieved):
         return central
     smallest = smallest_norm(plant, request.decay)
@@ -109,7 +109,7 @@ def smallest_norm(plant: Plant, decay: float | None) -> Judged | None:
 
 
 def _free(plant: Plant) -> Judged | None:
-    """Return the gain of the smallest norm: where program and norm agree that of the program, else the better one."""
+    """Return the gain of the smallest norm: the program's, or where the Riccati equation has a better one, that."""
     nothing = _judged(plant, np.zeros((plant.n, plant.l)))
     if nothing is not None and nothing.norm == 0.0:
         return nothing
@@ -119,7 +119,9 @@ def _free(plant: Plant) -> Judged | None:
         level = synthesis.smallest_level()
         best = _better(best, _judged(plant, synthesis.gain_within(level * (1 + BACKOFF))) if level else None)
         if best is not None and level and abs(best.norm / level - 1) <= 2 * BACKOFF:
-            return best
+            if _balanced(plant).central_gain(best.norm * (1 - 2 * BACKOFF)) is None:
+                return best
+            break
     return _better(best, _central(plant, plant, best))
 
 
@@ -141,9 +143,14 @@ def _decaying(plant: Plant, request: Request) -> Judged | None:
 
 def _central(plant: Plant, moved: Plant, best: Judged | None) -> Judged | None:
     """Return the central gain near the smallest level of the plant, or of one that bounds it."""
+    synthesis = _balanced(moved)
     reached = best or _judged(moved, optimal_h2_gain(moved))
-    level = None if reached is None else smallest_level(moved, reached.norm * (1 + INSIDE))
-    return None if level is None else _judged(plant, central_gain(moved, level * (1 + BACKOFF)))
+    level = None if reached is None else synthesis.central_level(reached.norm * (1 + INSIDE))
+    return None if level is None else _judged(plant, synthesis.central_gain(level * (1 + BACKOFF)))
+
+
+def _balanced(plant: Plant) -> Synthesis:
+    return Synthesis.of(plant, None, None, np.inf)
 
 
 def shifted(plant: Plant, decay: float | None) -> Plant:

@@ -88,7 +88,13 @@ def hinf_norm(A: Matrix, B: Matrix, C: Matrix, time: Time) -> HInfNorm:
     """
     if not _stable(A, time):
         return HInfNorm(np.inf, np.inf, float("nan"))
-    A, B, C = _balanced(A, B, C)
+    try:
+        return _hinf_norm(*_balanced(A, B, C), time)
+    except np.linalg.LinAlgError:  # a mode on the boundary but for rounding
+        return HInfNorm(np.inf, np.inf, float("nan"))
+
+
+def _hinf_norm(A: Matrix, B: Matrix, C: Matrix, time: Time) -> HInfNorm:
     sizes = float(np.linalg.norm(B)), float(np.linalg.norm(C))
     if min(sizes) == 0.0:
         return HInfNorm(0.0, 0.0, 0.0)
