@@ -87,9 +87,9 @@ def unproved(design: Design, bounds: DesignBounds) -> list[str]:
     gamma, decay = design.gamma, design.decay
     if gamma is not None and (bounds.gamma is None or bounds.gamma > gamma):
         proved = "none" if bounds.gamma is None else f"at most {at_most(bounds.gamma, DIGITS)}"
-        found.append(f"the file states an H-infinity norm of at most {at_most(gamma, DIGITS)}, proved is {proved}")
+        found.append(f"the file states an H-infinity norm of at most {float(gamma):.10g}, proved is {proved}")
     if decay is not None and (bounds.decay is None or not _decays(design, bounds.decay, decay)):
-        found.append(f"the file states a decay rate of at least {at_least(decay, DIGITS)}, which is not proved")
+        found.append(f"the file states a decay rate of at least {float(decay):.10g}, which is not proved")
     return found
 
 

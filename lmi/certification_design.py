@@ -86,7 +86,7 @@ def certify_design(
         >>> bool(bounds.decay >= 0.1)
         True
     """
-    cost = certified(plant, gain).certificate
+    cost = certified(plant, np.asarray(gain, dtype=float)).certificate
     loop = floats(_balls(cost.plant.loop(cost.gain)))
     found = DesignCertificate(cost, _decay(plant, cost, loop, decay), _norm(cost, gamma))
     if floor is not None:

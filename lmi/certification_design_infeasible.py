@@ -61,8 +61,9 @@ def certify_infeasible(plant: Plant, *, gamma: float | None = None, decay: float
     Example:
         >>> from derive.numeric.plant import plant_from_mapping
         >>> plant = plant_from_mapping({"time": "continuous", "A": 0.0, "C": 1.0, "W": 1.0, "V": 1.0})
-        >>> certify_infeasible(plant, gamma=0.9).reason
-        'every stabilising gain has an H-infinity norm of at least 0.99'
+        >>> proof = certify_infeasible(plant, gamma=0.9)
+        >>> proof.specification, proof.bound > 0.99
+        ('gamma', True)
     """
     exact = exact_plant(plant)
     if decay is not None:
