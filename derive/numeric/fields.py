@@ -89,11 +89,13 @@ def _shape(rows: int | None, columns: int | None) -> str:
 
 
 def read_matrix(name: str, value: Any) -> Matrix:
-    """Return a finite real matrix (rows, columns); a bare number is 1 x 1.
+    """Return a finite real matrix (rows, columns); a bare number is 1 x 1, a sparse matrix is filled.
 
     Raises:
         InputError: entries that are no numbers, ragged rows, a vector, NaN or infinity, no entries.
     """
+    if hasattr(value, "toarray"):
+        value = value.toarray()
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if not isinstance(value, list | tuple):
@@ -146,7 +148,9 @@ def read_text(name: str, value: Any) -> str:
 
 
 def read_names(name: str, value: Any, count: int) -> tuple[str, ...]:
-    """Return `count` different texts."""
+    """Return `count` different texts; a single one needs no list."""
+    if isinstance(value, str) and count == 1:
+        value = [value]
     if isinstance(value, np.ndarray):
         value = [entry.item() if isinstance(entry, np.ndarray) else entry for entry in value.ravel().tolist()]
     if not isinstance(value, list | tuple):

@@ -1,4 +1,7 @@
-"""Plant files: TOML, JSON, NumPy and MATLAB archives, each read to keys and values; nothing is ever unpickled."""
+"""Plant files: TOML, JSON, NumPy and MATLAB archives, each read to keys and values; nothing is ever unpickled.
+
+In a MATLAB file an empty matrix is a key that is not given, a struct holds units by name, a cell array names.
+"""
 
 import json
 import tomllib
@@ -99,12 +102,18 @@ def _mat(path: Path) -> dict[str, Any]:
         raise InputError(
             f"{path}: expected a MATLAB file of version 7 or older, got an error: {_line(error)}; save it with -v7"
         ) from None
-    return {key: _plain(value) for key, value in data.items() if not key.startswith("__")}
+    plain = {key: _plain(value) for key, value in data.items() if not key.startswith("__")}
+    return {key: value for key, value in plain.items() if not (isinstance(value, np.ndarray) and value.size == 0)}
 
 
-def _plain(value: np.ndarray) -> Any:
-    """Return a text for an array that holds one text, else the array."""
-    return str(value.item()) if value.dtype.kind == "U" and value.size == 1 else value
+def _plain(value: Any) -> Any:
+    """Return a text for an array that holds at most one text, keys and values for a MATLAB struct, else the array."""
+    if not isinstance(value, np.ndarray):
+        return value
+    if value.dtype.names and value.size == 1:
+        record = value.ravel()[0]
+        return {name: _plain(record[name]) for name in value.dtype.names}
+    return "".join(value.ravel().tolist()) if value.dtype.kind == "U" and value.size <= 1 else value
 
 
 def _line(error: Exception) -> str:

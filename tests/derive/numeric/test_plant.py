@@ -2,13 +2,15 @@
 
 import json
 import pickle
+from dataclasses import fields
 
 import numpy as np
 import pytest
 from scipy.io import savemat
+from scipy.sparse import csc_matrix
 
 from derive.errors import InputError
-from derive.numeric.plant import example_plant, load_plant, plant_from_mapping
+from derive.numeric.plant import Plant, example_plant, load_plant, plant_from_mapping
 
 GOOD = {
     "time": "continuous",
@@ -66,6 +68,104 @@ def test_every_format_gives_the_same_plant(tmp_path, kind):
         np.testing.assert_array_equal(getattr(plant, key), GOOD[key])
     assert (plant.time, plant.name, plant.states) == ("continuous", "pendulum", ("angle", "rate"))
     assert (plant.n, plant.l, plant.is_continuous, plant.outputs) == (2, 1, True, ("y1",))
+
+
+FULL = {
+    **GOOD,
+    "M": [[2.0, 0.0], [0.0, 0.0]],
+    "B": [[0.0], [1.0]],
+    "D_u": [[0.5]],
+    "P0": [[1.0, 0.0], [0.0, 3.0]],
+    "source": "a lecture",
+    "outputs": ["gyro"],
+    "units": {"angle": "rad", "rate": "rad/s"},
+}
+"""Every key of a continuous plant."""
+
+
+def matlab_cells(*rows):
+    cells = np.empty((len(rows), 1), dtype=object)
+    cells[:, 0] = rows
+    return cells
+
+
+def write_full(path, data):
+    if path.suffix == ".json":
+        path.write_text(json.dumps(data))
+    elif path.suffix == ".toml":
+        simple = {key: value for key, value in data.items() if key != "units"}
+        path.write_text(
+            "\n".join(f"{key} = {json.dumps(value)}" for key, value in simple.items())
+            + "\n[units]\n"
+            + "\n".join(f"{key} = {json.dumps(value)}" for key, value in data["units"].items())
+        )
+    elif path.suffix == ".npz":
+        np.savez(path, **{key: np.array(value) for key, value in data.items() if key != "units"})
+    else:
+        savemat(path, {**data, "states": matlab_cells("angle", "rate"), "outputs": matlab_cells("gyro")})
+    return path
+
+
+@pytest.mark.parametrize("kind", ["toml", "json", "npz", "mat"])
+def test_every_key_survives_every_format(tmp_path, kind):
+    expected = plant_from_mapping(FULL)
+    plant = load_plant(write_full(tmp_path / f"plant.{kind}", FULL))
+    for field in fields(Plant):
+        if (kind, field.name) == ("npz", "units"):
+            continue  # an archive of arrays has no place for them
+        ours, theirs = getattr(plant, field.name), getattr(expected, field.name)
+        if isinstance(theirs, np.ndarray):
+            np.testing.assert_array_equal(ours, theirs)
+            assert ours.dtype == theirs.dtype
+        else:
+            assert ours == theirs, field.name
+
+
+MATLAB = {
+    "whole numbers": {"A": np.array([[0, 1], [-2, -1]], np.int8), "C": np.array([[1, 0]], np.uint8)},
+    "sparse": {"A": csc_matrix([[0.0, 1.0], [-2.0, -1.0]]), "W": csc_matrix([[0.0, 0.0], [0.0, 1.0]])},
+    "logical": {"C": np.array([[True, False]])},
+    "a vector": {"C": np.array([1.0, 0.0])},
+    "a row of names": {"states": matlab_cells("angle", "rate").T},
+    "names of equal length": {"states": np.array(["angle", "rate "])},
+    "one name": {"outputs": "gyro"},
+    "an empty matrix": {"N": np.zeros((0, 0)), "name": ""},
+}
+
+
+@pytest.mark.parametrize("change", MATLAB.values(), ids=MATLAB)
+def test_what_matlab_saves_is_read(tmp_path, change):
+    data = {**FULL, "A": [[0, 1], [-2, -1]], **change}
+    savemat(tmp_path / "plant.mat", data)
+    plant = load_plant(tmp_path / "plant.mat")
+    np.testing.assert_array_equal(plant.A, [[0, 1], [-2, -1]])
+    np.testing.assert_array_equal(plant.C, [[1, 0]])
+    np.testing.assert_array_equal(plant.W, FULL["W"])
+    assert (plant.states, plant.outputs) == (("angle", "rate"), ("gyro",))
+    np.testing.assert_array_equal(plant.N, [[0], [0]] if "N" in change else FULL["N"])
+
+
+def test_a_sparse_matrix_is_a_matrix():
+    plant = plant_from_mapping({**GOOD, "A": csc_matrix(GOOD["A"])})
+    np.testing.assert_array_equal(plant.A, GOOD["A"])
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"N": np.array([0.0, 0.05])}, "N: expected shape (2, 1), got (1, 2); transpose it"),
+        ({"A": np.array([[0, 1j], [1, 1]])}, "A[1][1]: expected a real number, got 0j; "),
+        ({"A": {"x": 1}}, "A: expected a real number, got {'x': array([[1]])}; "),
+        ({"A": matlab_cells("a", "b")}, "A[1][1]: expected a real number, got array(['a'], dtype='<U1'); "),
+        ({"states": [1, 2]}, "states[1]: expected a text, got 1; "),
+    ],
+)
+def test_what_is_no_matrix_in_matlab_gives_one_line(tmp_path, change, message):
+    savemat(tmp_path / "plant.mat", {**FULL, **change})
+    with pytest.raises(InputError) as caught:
+        load_plant(tmp_path / "plant.mat")
+    assert str(caught.value).startswith(f"{tmp_path / 'plant.mat'}: {message}")
+    assert "\n" not in str(caught.value)
 
 
 def test_what_is_not_given_has_its_default():
