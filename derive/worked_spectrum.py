@@ -13,6 +13,7 @@ from derive.numeric.output_spectrum import OutputSpectrum, output_spectrum
 from derive.numeric.plant import Plant
 from derive.spectral import Det, Modulus, RealPart, Total
 from derive.terms import Glyph, Neg, Number, Symbol, Term, Trace
+from derive.worked_values import proper
 
 __all__ = ["spectrum_section"]
 
@@ -107,7 +108,7 @@ def _proof(plant: Plant, validation: Mapping[str, Any]) -> list[Block]:
     if enclosure["trace"] is not None:
         text += [" and ", Trace(P), _digits(enclosure["trace"])]
     elif enclosure["reason"]:
-        text += [f"; nothing of P, {enclosure['reason']}"]
+        text += [f"; nothing of P, {proper(enclosure['reason'])}"]
     return [Para((*text, "."))]
 
 

@@ -1,11 +1,14 @@
 """The command line of the convex programs: `lmi validate PLANT`, `lmi design PLANT`, `lmi certify FILE`."""
 
 import sys
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from derive._version import __version__
+
+if TYPE_CHECKING:
+    from lmi.validation import Validation
 
 __all__ = ["cli", "main"]
 
@@ -48,7 +51,8 @@ def cli(context: click.Context) -> None:
     "--format", "form", type=click.Choice(["text", "json"]), default="text", show_default=True, help="What to print."
 )
 @click.option("--certificate", metavar="FILE", help="Where to write the exact certificate; lmi certify verifies it.")
-def validate(plant: str, form: str, certificate: str | None) -> int:
+@click.option("-o", "--output", metavar="REPORT.html", help="Where to write the report as a page, with its figures.")
+def validate(plant: str, form: str, certificate: str | None, output: str | None) -> int:
     """Compute the optimal error covariance of PLANT by every route and compare them in one table.
 
     PLANT is a file (.toml, .json, .npz, .mat) with time, A, C, W, V and optionally N, M, B, D_u.
@@ -59,8 +63,13 @@ def validate(plant: str, form: str, certificate: str | None) -> int:
     from lmi.validation import validate as run
 
     try:
+        if output is not None:
+            _check_page(output)
         with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
             validation = run(plant, progress=status.update)
+            if output is not None:
+                status.update("page")
+                _write_page(output, validation)
         if certificate is not None and validation.certificate.certified is not None:
             from lmi.certificate_file import write_certificate
 
@@ -76,6 +85,22 @@ def validate(plant: str, form: str, certificate: str | None) -> int:
 
         print_table(validation)
     return validation.verdict.exit_code
+
+
+def _check_page(output: str) -> None:
+    from pathlib import Path
+
+    from derive.validation_page import check_page
+
+    check_page(Path(output))
+
+
+def _write_page(output: str, validation: "Validation") -> None:
+    from pathlib import Path
+
+    from derive.validation_page import write_page
+
+    write_page(Path(output), validation.plant, validation.as_dict())
 
 
 @cli.command()

@@ -156,7 +156,8 @@ def _nlp(plant: Plant) -> Answer:
     if result.status == "strong":
         return _strong(plant, result.P, result.gain, result.stationarity)
     answer = _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
-    return replace(answer, iterations=result.iterations, history=tuple(getattr(result, "history", ())))
+    history = tuple((trace - result.trace) / (result.trace or 1.0) for trace in getattr(result, "history", ()))
+    return replace(answer, iterations=result.iterations, history=history)
 
 
 def _covariance(plant: Plant, status: str, P: Matrix, gain: Matrix, error: Matrix | None) -> Answer:
@@ -254,7 +255,7 @@ ROUTES = (
     RouteSpec("closed-form", _closed_form, ("riccati", *_CONVEX, "interior-point", "nlp", "integral", *_BASED)),
     RouteSpec("simulation", _simulation, _APART, largest=50),
 )
-"""Riccati first. The convex programs and the interior-point method share coordinates and the form of the problem, Riccati
+"""Riccati first. The convex programs and the interior-point method share coordinates and form, Riccati
 and the Hamiltonian's eigenvalues the same matrix, and the simulation runs with Riccati's gain, so that these do not
 confirm each other. The interior-point method and the programs take their coordinates, and it its start, from a rough
 covariance of Lyapunov equations, not from Riccati's answer. A sampled answer confirms nothing; it may disagree."""

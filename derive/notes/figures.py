@@ -13,7 +13,9 @@ if TYPE_CHECKING:
     from numpy import complexfloating
     from numpy.typing import NDArray
 
-__all__ = ["covariance_ellipses", "deviations_over_time", "eigenvalue_map", "spectrum_area"]
+__all__ = [
+    "COLOURS", "as_svg", "covariance_ellipses", "deviations_over_time", "drawing", "eigenvalue_map", "spectrum_area",
+]  # fmt: skip
 
 COLOURS = ("#1a5fb4", "#c64600", "#26a269", "#813d9c", "#986a44", "#5e5c64")
 STYLE: Any = {
@@ -46,7 +48,7 @@ def deviations_over_time(
         labels: one a state, mathematics allowed.
         unit: label of the time axis.
     """
-    with _drawing(6.4, 3.1) as (figure, axes):
+    with drawing(6.4, 3.1) as (figure, axes):
         for i, label in enumerate(labels):
             colour = COLOURS[i % len(COLOURS)]
             axes.plot(times, deviations[:, i], color=colour, lw=1.8, label=label)
@@ -55,14 +57,14 @@ def deviations_over_time(
         axes.set_ylim(bottom=0)
         axes.legend(ncols=2)
         axes.grid(axis="y", lw=0.6)
-        return _svg(figure)
+        return as_svg(figure)
 
 
 def eigenvalue_map(before: NDArray[complexfloating], after: NDArray[complexfloating], continuous: bool) -> str:
     """Draw the eigenvalues of A (crosses) and of A - L C (dots) with the boundary of stability."""
     from numpy import concatenate, cos, linspace, pi, sin
 
-    with _drawing(4.6, 3.4) as (figure, axes):
+    with drawing(4.6, 3.4) as (figure, axes):
         axes.axhline(0, color="#e4e7ec", lw=0.8, zorder=0)
         if continuous:
             axes.axvline(0, color="#b3261e", lw=1.1)
@@ -80,18 +82,18 @@ def eigenvalue_map(before: NDArray[complexfloating], after: NDArray[complexfloat
             axes.set_ylim(-top, top)
         axes.set(xlabel="real part", ylabel="imaginary part")
         axes.legend()
-        return _svg(figure)
+        return as_svg(figure)
 
 
 def covariance_ellipses(ellipses: Sequence[tuple[str, NDArray[Any]]], labels: tuple[str, str]) -> str:
     """Draw covariance ellipses, each a curve of shape (k, 2), one for each instant."""
-    with _drawing(4.6, 3.4) as (figure, axes):
+    with drawing(4.6, 3.4) as (figure, axes):
         for i, (label, points) in enumerate(ellipses):
             axes.plot(points[:, 0], points[:, 1], color=COLOURS[i % len(COLOURS)], lw=1.6, label=label)
         axes.set(xlabel=labels[0], ylabel=labels[1])
         axes.grid(lw=0.6)
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-        return _svg(figure)
+        return as_svg(figure)
 
 
 def spectrum_area(
@@ -113,7 +115,7 @@ def spectrum_area(
         total: label of the sum.
         continuous: whether time is.
     """
-    with _drawing(7.0, 3.1, widths=(4.0, 0.75 * len(blocks) + 0.3)) as (figure, (left, right)):
+    with drawing(7.0, 3.1, widths=(4.0, 0.75 * len(blocks) + 0.3)) as (figure, (left, right)):
         left.fill_between(frequencies, heights, color=COLOURS[0], alpha=0.25, lw=0)
         left.plot(frequencies, heights, color=COLOURS[0], lw=1.6)
         if continuous:
@@ -125,7 +127,7 @@ def spectrum_area(
         for axes, least, most in ((left, min(heights), max(heights)), (right, *_levels(blocks))):
             axes.set_ylim(1.15 * min(least, 0.0), 1.15 * max(most, 0.0) or 1.0)
             axes.axhline(0, color="#5d6675", lw=0.8)
-        return _svg(figure)
+        return as_svg(figure)
 
 
 def _measure(continuous: bool) -> str:
@@ -157,33 +159,49 @@ def _levels(blocks: Sequence[tuple[str, float]]) -> tuple[float, float]:
 
 
 @contextmanager
-def _drawing(width: float, height: float, widths: Sequence[float] = (1.0,)) -> Iterator[tuple[Figure, Any]]:
+def drawing(
+    width: float, height: float, widths: Sequence[float] = (1.0,), rows: int = 1
+) -> Iterator[tuple[Figure, Any]]:
     """Draw without a display, in the style of the notes, and leave no trace in the user's settings.
 
     Args:
         width: of the drawing.
         height: of the drawing.
         widths: of the axes that lie side by side, relative to each other.
+        rows: of axes, one above the other.
     """
     import matplotlib
     from matplotlib.figure import Figure
 
     with matplotlib.rc_context(STYLE):
         figure = Figure(figsize=(width, height))
-        yield figure, figure.subplots(ncols=len(widths), width_ratios=widths)
+        yield figure, figure.subplots(nrows=rows, ncols=len(widths), width_ratios=widths)
 
 
-def _svg(figure: Figure) -> str:
+def as_svg(figure: Figure) -> str:
+    """Return a drawing as the text of its svg element."""
     out = StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
     return _compact(out.getvalue()[out.getvalue().index("<svg") :])
 
 
 def _compact(svg: str) -> str:
-    """Drop what does not show: description, comments, white space between tags, names that nothing refers to, and
-    hundredths of a point in paths."""
+    """Drop what does not show: description, comments, white space between tags, names that nothing refers to,
+    hundredths of a point, and letters in paths that say the same as the one before."""
     svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"\s*\n\s*(?=[^<\s])", " ", re.sub(r">\s+<", "><", svg))
-    svg = re.sub(r' d="[^"]*"', lambda path: re.sub(r"(\.\d)\d+", r"\1", path[0]), svg)
+    svg = re.sub(r' d="([^"]*)"', lambda path: f' d="{_short_path(path[1])}"', svg)
+    svg = re.sub(r'( [xy]="-?\d+\.\d)\d+"', r'\1"', svg)
     used = set(re.findall(r"#([^\s\")]+)", svg))
     return re.sub(r' id="([^"]*)"', lambda m: m[0] if m[1] in used else "", svg)
+
+
+def _short_path(path: str) -> str:
+    """Return a path in tenths of a point; a line or curve after another one goes without its letter."""
+    out: list[str] = []
+    last = ""
+    for word in re.sub(r"(\.\d)\d+", r"\1", path).split():
+        if not (word == last and word in "LQC"):
+            out.append(word)
+        last = word if word.isalpha() else last
+    return " ".join(out)

@@ -32,13 +32,13 @@ LEGEND = {
 }
 
 
-def html(document: Document) -> str:
-    """Return the page."""
+def html(document: Document, *, lead: str = "", style: str = "") -> str:
+    """Return the page; a lead, in HTML, says what it comes to before anything else, in a style of its own."""
     blocks = [b for b in document.blocks if not (isinstance(b, Section) and b.title == document.title)]
     body = "\n".join(map(block, blocks))
-    count = f"{document.proved} of {document.total} steps proved and replayed" if document.total else ""
+    count = f"{document.proved} of {document.total} steps proved and replayed" if document.total else lead
     sections = [b for b in blocks if isinstance(b, Section)]
-    return whole_page(document.title, document.subtitle, count, body, _contents(sections))
+    return whole_page(document.title, document.subtitle, count, body, _contents(sections), style=style)
 
 
 def whole_page(

@@ -57,7 +57,7 @@ def test_the_boundary_of_stability_is_a_line_or_a_circle():
 
 def test_the_axis_of_frequency_is_logarithmic_in_continuous_time_alone(monkeypatch):
     scales = []
-    monkeypatch.setattr(figures, "_svg", lambda figure: scales.append([axes.get_xscale() for axes in figure.axes]))
+    monkeypatch.setattr(figures, "as_svg", lambda figure: scales.append([axes.get_xscale() for axes in figure.axes]))
     spectrum()
     spectrum(continuous=False)
     assert scales == [["log", "linear"], ["linear", "linear"]]
@@ -74,7 +74,7 @@ def test_the_axis_of_frequency_is_logarithmic_in_continuous_time_alone(monkeypat
 )
 def test_blocks_stand_on_each_other_and_the_sum_on_the_ground(sizes, texts, limits, monkeypatch):
     drawn = []
-    monkeypatch.setattr(figures, "_svg", lambda figure: drawn.append(figure.axes[1]))
+    monkeypatch.setattr(figures, "as_svg", lambda figure: drawn.append(figure.axes[1]))
     spectrum(blocks=[(str(i), size) for i, size in enumerate(sizes)])
     (axes,) = drawn
     assert [text.get_text() for text in axes.texts] == texts
