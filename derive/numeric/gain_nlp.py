@@ -7,11 +7,10 @@ from typing import Literal
 import numpy as np
 
 from derive.errors import InputError
-from derive.numeric.extended import cholesky, forward
 from derive.numeric.gain_frame import Frame
 from derive.numeric.gain_search import Answer, Method, search
 from derive.numeric.modes import Matrix
-from derive.numeric.normal import NormalForm, normal_form
+from derive.numeric.normal import normal_form, plant_gain
 from derive.numeric.plant import Plant
 
 __all__ = ["GainForm", "GainResult", "optimise_gain"]
@@ -108,7 +107,7 @@ def _optimise(plant: Plant, form: GainForm) -> GainResult:
     P = whole.unscaled(kept @ found.P @ kept.T).astype(float)
     multiplier = found.multiplier
     return GainResult(
-        gain=_plant_gain(plant, whole, kept @ found.gain),
+        gain=plant_gain(plant, whole, kept @ found.gain),
         P=P,
         trace=float(np.trace(P)),
         status=_status(found, len(boundary.modes)),
@@ -144,10 +143,3 @@ def _status(found: Answer, boundary_modes: int) -> GainStatus:
     if not found.stationarity <= STATIONARY:
         return "inaccurate"
     return "strong" if boundary_modes else "optimal"
-
-
-def _plant_gain(plant: Plant, form: NormalForm, K: Matrix) -> Matrix:
-    """Return L = t K V^(-1/2) + N V^-1."""
-    root = cholesky(plant.V.astype(np.longdouble))
-    scaled = form.scaling[:, None] * K + forward(root, plant.N.T.astype(np.longdouble)).T
-    return forward(root[::-1, ::-1].T, scaled.T[::-1])[::-1].T.astype(float)

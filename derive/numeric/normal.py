@@ -9,7 +9,7 @@ from derive.numeric.extended import cholesky, forward
 from derive.numeric.modes import Matrix, Time, balancing
 from derive.numeric.plant import Plant
 
-__all__ = ["NormalForm", "normal_form"]
+__all__ = ["NormalForm", "normal_form", "plant_gain"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +70,13 @@ def normal_form(plant: Plant) -> NormalForm:
     C, N = forward(root, C), forward(root, N.T).T
     t = _balancing(A - N @ C, C, W - N @ N.T)
     return NormalForm(A / t[:, None] * t, C * t, W / np.outer(t, t), N / t[:, None], plant.time, t)
+
+
+def plant_gain(plant: Plant, form: NormalForm, K: Matrix) -> Matrix:
+    """Return the gain L = t K V^(-1/2) + N V^-1 (n, l) of the plant for a gain K of its normal form."""
+    root = cholesky(plant.V.astype(np.longdouble))
+    scaled = form.scaling[:, None] * K + forward(root, plant.N.T.astype(np.longdouble)).T
+    return forward(root[::-1, ::-1].T, scaled.T[::-1])[::-1].T.astype(float)
 
 
 def _balancing(F: Matrix, C: Matrix, W: Matrix) -> Matrix:
