@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 
 from derive.errors import InputError
 from derive.numeric.plant import Plant
-from lmi.synthesis_achieved import Achieved, radius_of
+from lmi.synthesis_achieved import Achieved
 from lmi.synthesis_proof import Impossible, certify, hidden_mode, why_not
 from lmi.synthesis_request import Request
 from lmi.synthesis_search import find_gain
+from lmi.synthesis_shift import radius_of
 
 if TYPE_CHECKING:
     from lmi.certificate_design import DesignCertificate
@@ -115,9 +116,9 @@ def design(
         return _without_gain(loaded, request, impossible)
     say("gain")
     found = find_gain(loaded, request)
-    if found is None:
+    if found is None or not request.is_met(found.achieved):
         say("proof that no gain meets the request")
-        return _without_gain(loaded, request, why_not(loaded, request))
+        return _without_gain(loaded, request, why_not(loaded, request, found))
     say("certificate")
     certificate, lacking = certify(loaded, request, found)
     verdict = Verdict.NOT_CERTIFIED if lacking else Verdict.CERTIFIED

@@ -12,7 +12,7 @@ from derive.numeric.norms import HInfNorm, hinf_norm
 from derive.numeric.plant import Plant
 from lmi.programs.observer import factor
 
-__all__ = ["Achieved", "achieved", "decay_of", "radius_of"]
+__all__ = ["Achieved", "achieved", "norm_of"]
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -64,19 +64,20 @@ def achieved(plant: Plant, gain: Matrix) -> Achieved | None:
         return None
     P = error_covariance(plant.A, plant.C, plant.W, plant.V, plant.N, gain, plant.time)
     cost = max(float(np.trace(plant.M @ P)), 0.0)
-    root = factor(np.block([[plant.W, plant.N], [plant.N.T, plant.V]]))
-    norm = hinf_norm(loop, root[: plant.n] - gain @ root[plant.n :], factor(plant.M).T, plant.time)
+    norm = norm_of(plant, gain)
     ordered = tuple(complex(mode) for mode in modes[np.argsort(-distance, kind="stable")])
-    return Achieved(cost, norm, decay_of(plant, ordered[0]), ordered)
+    return Achieved(cost, norm, _decay_of(plant, ordered[0]), ordered)
 
 
-def decay_of(plant: Plant, mode: complex) -> float:
+def norm_of(plant: Plant, gain: Matrix) -> HInfNorm:
+    """Return the norm of M^(1/2) (sI - A + L C)^-1 [I, -L] [[W, N], [N', V]]^(1/2), in discrete time with z for s."""
+    root = factor(np.block([[plant.W, plant.N], [plant.N.T, plant.V]]))
+    noise = root[: plant.n] - gain @ root[plant.n :]
+    return hinf_norm(plant.A - gain @ plant.C, noise, factor(plant.M).T, plant.time)
+
+
+def _decay_of(plant: Plant, mode: complex) -> float:
     """Return the rate at which a mode falls: -Re lambda, in discrete time -ln|lambda| / dt."""
     if plant.is_continuous:
         return -mode.real
     return -float(np.log(abs(mode))) / (plant.dt or 1.0) if mode else np.inf
-
-
-def radius_of(plant: Plant, decay: float) -> float:
-    """Return the modulus exp(-decay dt) of a mode that falls at a rate, in discrete time."""
-    return float(np.exp(-decay * (plant.dt or 1.0)))

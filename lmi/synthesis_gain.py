@@ -19,14 +19,14 @@ from lmi.programs.program import Program
 from lmi.residual import gain_covariance, optimal_gain
 from lmi.scaling import Scaling, balanced, recentred, scaled_plant
 from lmi.solve import Accuracy, Outcome, Status, solve_program
-from lmi.synthesis_achieved import radius_of
 from lmi.synthesis_riccati import central_gain, smallest_level
+from lmi.synthesis_shift import radius_of, shifted
 
 __all__ = ["COORDINATES", "Synthesis", "optimal_h2_gain"]
 
 Matrix = NDArray[np.floating[Any]]
 
-ATTEMPTS = (Accuracy(1e-9, 1e-8), Accuracy(1e-12, 1e-8), Accuracy(1e-8, 1e-6))
+ATTEMPTS = (Accuracy(1e-9, 1e-8), Accuracy(1e-8, 1e-6))
 """Tried in this order until the numbers returned solve the program."""
 
 COORDINATES = ((1e-4, 1e4), (1e-4, 1e2), (0.0, 4.0))
@@ -80,7 +80,7 @@ class Synthesis:
             widest: bound of X in them.
         """
         common = balanced(plant)
-        scaling = common if faint is None else _centred(plant, common, faint)
+        scaling = common if faint is None else _centred(shifted(plant, decay), common, faint)
         M = scaling.T.T @ plant.M @ scaling.T
         size = float(np.linalg.norm(M, 2)) or 1.0
         scaled = replace(scaled_plant(plant, scaling), M=(M + M.T) / (2 * size))
@@ -144,7 +144,7 @@ class Synthesis:
 
 
 def _centred(plant: Plant, common: Scaling, faint: float) -> Scaling:
-    """Return coordinates in which the covariance with a little more noise is the identity."""
+    """Return coordinates in which the optimal covariance with a little more noise is the identity."""
     scaled = scaled_plant(plant, common)
     known = solve_riccati(replace(scaled, W=scaled.W + faint * np.eye(plant.n)))
     return common if known.status == "failed" else recentred(plant, common, known.P, 0.0)

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from derive.numeric.modes import format_mode, undetectable_mode
 from derive.numeric.plant import Plant
 from lmi.certification import NotCertifiedError
-from lmi.synthesis_achieved import radius_of
 from lmi.synthesis_request import Request
-from lmi.synthesis_search import Judged, shifted, smallest_norm
+from lmi.synthesis_search import Judged, smallest_norm
+from lmi.synthesis_shift import radius_of, shifted
 
 if TYPE_CHECKING:
     from lmi.certificate_design import DesignCertificate
@@ -109,21 +109,26 @@ def hidden_mode(plant: Plant, request: Request) -> Impossible | None:
     return _decided(plant, reason, decay=request.decay)
 
 
-def why_not(plant: Plant, request: Request) -> Impossible:
-    """Tell which specification of a request fails for which no gain was found."""
+def why_not(plant: Plant, request: Request, nearest: Judged | None) -> Impossible:
+    """Tell which specification of a request fails.
+
+    Args:
+        plant: the plant.
+        request: what no gain was found for.
+        nearest: the gain of the smallest norm found that has the decay, or None.
+    """
     if request.gamma is None:
         return Impossible("no gain was found that stabilises" + _with_decay(request), False)
-    free = smallest_norm(plant, None)
+    free = nearest if request.decay is None else smallest_norm(plant, None)
     if request.decay is not None and free is not None and free.norm <= request.gamma:
-        return _together(plant, request)
+        return _together(request, nearest)
     near = "no gain was found" if free is None else f"the smallest norm found is {free.norm:.8g}"
     least = 0.0 if free is None else free.norm * (1 - SHARP)
     return _decided(plant, f"gamma {request.gamma:g} fails: {near}", gamma=max(least, request.gamma))
 
 
-def _together(plant: Plant, request: Request) -> Impossible:
-    both = smallest_norm(plant, request.decay)
-    reach = "" if both is None else f", at the decay the smallest norm found is {both.norm:.6g}"
+def _together(request: Request, nearest: Judged | None) -> Impossible:
+    reach = "" if nearest is None else f", at the decay the smallest norm found is {nearest.norm:.6g}"
     reason = f"gamma {request.gamma:g} and decay {request.decay:g} fail together: each alone can be met{reach}"
     return Impossible(f"{reason}; not proved", False)
 

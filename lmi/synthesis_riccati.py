@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from derive.numeric.modes import distance_to_stability
 from derive.numeric.plant import Plant
 from lmi.programs.observer import factor
+from lmi.synthesis_achieved import norm_of
 
 __all__ = ["central_gain", "smallest_level"]
 
@@ -43,6 +44,8 @@ def central_gain(plant: Plant, gamma: float) -> Matrix | None:
     """
     from scipy.linalg import solve_continuous_are, solve_discrete_are
 
+    if not gamma > 0:
+        return None
     E = factor(plant.M)
     outputs = np.vstack([plant.C, E.T])
     cross = np.hstack([plant.N, np.zeros(E.shape)])
@@ -58,7 +61,10 @@ def central_gain(plant: Plant, gamma: float) -> Matrix | None:
 
 
 def _gain(plant: Plant, P: Matrix, outputs: Matrix, cross: Matrix, level: Matrix) -> Matrix | None:
-    """Return the central gain for P if P is a solution of the kind that is asked for."""
+    """Return the central gain for P if P is a solution of the kind that is asked for.
+
+    SciPy returns matrices also where the equation has no such solution; then the gain's norm is not below the level.
+    """
     sizes = np.linalg.eigvalsh((P + P.T) / 2)
     if sizes[0] < -NEGATIVE_RTOL * max(sizes[-1], 0.0):
         return None
@@ -72,11 +78,9 @@ def _gain(plant: Plant, P: Matrix, outputs: Matrix, cross: Matrix, level: Matrix
         full = np.linalg.solve(innovation, (plant.A @ P @ outputs.T + cross).T).T
         U = _shrunk(P, outputs[plant.l :], innovation[plant.l :, plant.l :])
         gain = np.linalg.solve(plant.C @ U @ plant.C.T + plant.V, (plant.A @ U @ plant.C.T + plant.N).T).T
-    stable = all(
-        np.all(distance_to_stability(np.linalg.eigvals(loop), plant.time) < 0)
-        for loop in (plant.A - full @ outputs, plant.A - gain @ plant.C)
-    )
-    return gain if stable else None
+    loop = plant.A - full @ outputs
+    stable = np.all(distance_to_stability(np.linalg.eigvals(loop), plant.time) < 0)
+    return gain if stable and norm_of(plant, gain).lower < np.sqrt(-level[-1, -1]) else None
 
 
 def _shrunk(P: Matrix, E: Matrix, inner: Matrix) -> Matrix:

@@ -1,18 +1,20 @@
 """The search for a gain: convex programs and Riccati equations propose, what a gain achieves decides."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.plant import Plant
-from lmi.synthesis_achieved import Achieved, achieved, radius_of
+from lmi.synthesis_achieved import Achieved, achieved
 from lmi.synthesis_gain import COORDINATES, Synthesis, optimal_h2_gain
 from lmi.synthesis_request import Request
+from lmi.synthesis_shift import shifted
 
-__all__ = ["Judged", "find_gain", "shifted", "smallest_norm"]
+__all__ = ["Judged", "find_gain", "smallest_norm"]
 
 Matrix = NDArray[np.floating[Any]]
 
@@ -46,7 +48,7 @@ class Judged:
 
 
 def find_gain(plant: Plant, request: Request) -> Judged | None:
-    """Return the best gain found that meets the request, or None.
+    """Return the best gain found that meets the request; or the one that comes nearest, which does not; or None.
 
     The gain of least covariance is best when it meets everything and no smallest norm is asked for.
 
@@ -59,40 +61,41 @@ def find_gain(plant: Plant, request: Request) -> Judged | None:
     optimal = _judged(plant, optimal_h2_gain(plant))
     if optimal is not None and request.is_met(optimal.achieved):
         return optimal
-    return cheapest(plant, request) if request.objective == "h2" else within(plant, request)
+    return _cheapest(plant, request) if request.objective == "h2" else _within(plant, request)
 
 
-def cheapest(plant: Plant, request: Request) -> Judged | None:
+def _cheapest(plant: Plant, request: Request) -> Judged | None:
     """Return a gain of small cost that meets the decay; cost and decay share their Lyapunov matrix."""
-    if plant.n <= LARGEST:
-        gains = (Synthesis.of(plant, request.decay, *way).cheapest_gain() for way in COORDINATES)
-    else:
-        gains = iter((optimal_h2_gain(shifted(plant, request.decay)),))
-    return next(_meeting(plant, request, gains), None)
+    gains = (synthesis.cheapest_gain() for synthesis in _ways(plant, request.decay))
+    moved = map(optimal_h2_gain, (shifted(plant, request.decay),))
+    return next(_meeting(plant, request, chain(gains, moved)), None)
 
 
-def within(plant: Plant, request: Request) -> Judged | None:
-    """Return a gain that meets gamma and the decay, the one of least cost among those that the programs find."""
+def _within(plant: Plant, request: Request) -> Judged | None:
+    """Return a gain that meets gamma and the decay, the one of least cost among those found; or the nearest."""
     gamma = (request.gamma or np.inf) * (1 - INSIDE)
-    for way in COORDINATES if plant.n <= LARGEST else ():
-        synthesis = Synthesis.of(plant, request.decay, *way)
-        found = list(_meeting(plant, request, _within(synthesis, gamma, request.decay)))
+    for synthesis in _ways(plant, request.decay):
+        found = list(_meeting(plant, request, _gains_within(synthesis, gamma, request.decay)))
         if found:
             return min(found, key=lambda judged: judged.achieved.cost)
-    moved = _balanced(shifted(plant, request.decay))
-    central = _judged(plant, moved.central_gain(gamma))
+    central = _judged(plant, _balanced(shifted(plant, request.decay)).central_gain(gamma))
     if central is not None and request.is_met(central.achieved):
         return central
-    smallest = smallest_norm(plant, request.decay)
-    return smallest if smallest is not None and request.is_met(smallest.achieved) else None
+    return smallest_norm(plant, request.decay)
 
 
-def _within(synthesis: Synthesis, gamma: float, decay: float | None) -> Iterator[Matrix | None]:
+def _gains_within(synthesis: Synthesis, gamma: float, decay: float | None) -> Iterator[Matrix | None]:
     """Iterate over gains for gamma, with a decay also over those for looser bounds, whose norms may be far below."""
     yield synthesis.gain_within(gamma)
     if decay is not None:
         yield synthesis.cheapest_gain()
         yield from (synthesis.gain_within(gamma * looser) for looser in LOOSER)
+
+
+def _ways(plant: Plant, decay: float | None) -> Iterator[Synthesis]:
+    """Iterate over coordinates in which to solve programs."""
+    ways = COORDINATES if plant.n <= LARGEST else ()
+    return (Synthesis.of(plant, decay, *way) for way in (ways if decay is None else ways[:1]))
 
 
 def smallest_norm(plant: Plant, decay: float | None) -> Judged | None:
@@ -114,8 +117,7 @@ def _free(plant: Plant) -> Judged | None:
     if nothing is not None and nothing.norm == 0.0:
         return nothing
     best: Judged | None = None
-    for way in COORDINATES if plant.n <= LARGEST else ():
-        synthesis = Synthesis.of(plant, None, *way)
+    for synthesis in _ways(plant, None):
         level = synthesis.smallest_level()
         best = _better(best, _judged(plant, synthesis.gain_within(level * (1 + BACKOFF))) if level else None)
         if best is not None and level and abs(best.norm / level - 1) <= 2 * BACKOFF:
@@ -130,8 +132,7 @@ def _decaying(plant: Plant, request: Request) -> Judged | None:
 
     The bound that the program gives is often above the norm, so that the gain for a looser bound may be better.
     """
-    for way in COORDINATES if plant.n <= LARGEST else ():
-        synthesis = Synthesis.of(plant, request.decay, *way)
+    for synthesis in _ways(plant, request.decay):
         level = synthesis.smallest_level()
         gains = (synthesis.gain_within(level * (1 + backoff)) for backoff in BACKOFFS) if level else iter(())
         best = min(_meeting(plant, request, gains), key=lambda judged: judged.norm, default=None)
@@ -151,22 +152,6 @@ def _central(plant: Plant, moved: Plant, best: Judged | None) -> Judged | None:
 
 def _balanced(plant: Plant) -> Synthesis:
     return Synthesis.of(plant, None, None, np.inf)
-
-
-def shifted(plant: Plant, decay: float | None) -> Plant:
-    """Return the plant with A + a I, in discrete time A / r and C / r: a gain for it gives the plant the decay.
-
-    Its H-infinity norm and its cost are bounds of those of the plant, by the maximum principle and by comparison.
-
-    Source: B. D. O. Anderson and J. B. Moore, Linear system optimisation with prescribed degree of stability, Proc. IEE
-        116 (1969) 2083-2087.
-    """
-    if decay is None:
-        return plant
-    if plant.is_continuous:
-        return replace(plant, A=plant.A + decay * np.eye(plant.n))
-    radius = radius_of(plant, decay)
-    return replace(plant, A=plant.A / radius, C=plant.C / radius)
 
 
 def _better(best: Judged | None, other: Judged | None) -> Judged | None:
