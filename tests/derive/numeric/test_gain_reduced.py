@@ -9,6 +9,7 @@ import pytest
 from derive.numeric.gain_lyapunov import Lyapunov
 from derive.numeric.gain_reduced import ReducedCost, free_cost, solve_reduced, stabilised
 from derive.numeric.lyapunov import solve_lyapunov
+from derive.numeric.normal import normal_form
 from derive.numeric.stabilise import stabilising_gain
 from tests.derive.numeric.plants import random_plant
 
@@ -96,10 +97,19 @@ def test_fixed_entries_stay():
 def test_homotopy_finds_a_stabilising_gain(time):
     for seed in range(2):
         plant = random_plant(time, 4, 2, seed=seed)
-        cost = free_cost(2 * plant.A, plant.C, plant.W, time)
+        A = plant.A + np.eye(4) if time == "continuous" else 2 * plant.A
+        cost = free_cost(A, plant.C, plant.W, time)
         zero = np.zeros(8)
         assert not cost.is_stable(zero)
         assert cost.is_stable(stabilised(cost, zero))
+
+
+def test_many_unstable_modes_seen_by_one_output():
+    """Moving them far is beyond double precision; moving them a little is not."""
+    plant = random_plant("continuous", 24, 1, seed=1)
+    F, C, _ = normal_form(plant).uncorrelated()
+    assert np.linalg.eigvals(F).real.max() > 0.5
+    assert np.linalg.eigvals(F - stabilising_gain(F, C, "continuous") @ C).real.max() < 0
 
 
 def test_homotopy_says_when_it_finds_none():
