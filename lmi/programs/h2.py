@@ -66,7 +66,7 @@ def h2(plant: Plant) -> Program:
         return True
 
     load(plant)
-    return Program("smallest H2 norm from noise to error", problem, unknowns.answer, load, attainable=1e-6)
+    return Program("smallest H2 norm from noise to error", problem, unknowns.answer, load, attainable=5e-8)
 
 
 def gramian(unknowns: Unknowns) -> list[cp.Constraint]:
