@@ -155,8 +155,9 @@ def _nlp(plant: Plant) -> Answer:
         return Answer("failed: no stabilising gain was found")
     if result.status == "strong":
         return _strong(plant, result.P, result.gain, result.stationarity)
-    answer = _covariance(plant, "solved", result.P, result.gain, covariance_error(plant, result.P))
-    history = tuple((trace - result.trace) / (result.trace or 1.0) for trace in getattr(result, "history", ()))
+    status = "solved" if result.status == "optimal" else "inaccurate: the gradient of tr P does not vanish"
+    answer = _covariance(plant, status, result.P, result.gain, covariance_error(plant, result.P))
+    history = tuple((trace - result.trace) / (result.trace or 1.0) for trace in result.history)
     return replace(answer, iterations=result.iterations, history=history)
 
 
