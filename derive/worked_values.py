@@ -57,7 +57,7 @@ def spread(value: float, half_width: float) -> str:
     place = floor(log10(half_width)) - 1
     if -4 <= place <= 0 and abs(value) < 1e6:
         return f"{number(value, f'.{-place}f')} ± {half_width:.{-place}f}"
-    digits = max(0, floor(log10(max(abs(value), half_width))) - place)
+    digits = max(0, floor(log10(max(abs(value), half_width))) - place - 1)
     return f"{number(value, f'.{digits}e')} ± {number(half_width, '.0e')}"
 
 

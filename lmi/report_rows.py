@@ -76,13 +76,13 @@ def _number(value: float | int | None, form: str) -> str:
 
 
 def spread(value: float, half_width: float) -> str:
-    """Return a value with its half width, both to the second digit of that: 7.19+-0.20; of a value alone six digits."""
+    """Return a value with its half width, 7.19+-0.20, to the second digit of that, or 8.70e+07+-3e+05 to the first."""
     if not half_width > 0:
         return f"{value:.6g}"
     place = floor(log10(half_width)) - 1
     if -4 <= place <= 0 and abs(value) < 1e6:
         return f"{value:.{-place}f}+-{half_width:.{-place}f}"
-    digits = max(0, floor(log10(max(abs(value), half_width))) - place)
+    digits = max(0, floor(log10(max(abs(value), half_width))) - place - 1)
     return f"{value:.{digits}e}+-{half_width:.0e}"
 
 

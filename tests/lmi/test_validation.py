@@ -1,6 +1,7 @@
 """One plant, every route, one verdict: agreement, disagreement, and what is neither."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,8 +15,10 @@ import lmi.validation as validation_module
 from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
+from lmi.certification_outcome import CertificateOutcome
 from lmi.comparison import AGREEMENT
 from lmi.covariance import solve_covariance
+from lmi.enclosure import Enclosure
 from lmi.report import verdict_line
 from lmi.routes import ROUTES, Answer, cost_of, output_rounding
 from lmi.solve import Status
@@ -308,3 +311,98 @@ def test_import_loads_no_numerical_package(module):
     code = f"import sys, {module}; print([name for name in {heavy} if name in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
     assert result.stdout.strip() == "[]"
+
+
+# ------------------------------------------------------------------------------------------------ simulation
+def with_covariance(factor):
+    """Riccati's route with its covariance, but not its gain, multiplied."""
+
+    def run(plant):
+        answer = ROUTES[0].run(plant)
+        return replace(answer, P=factor * answer.P)
+
+    return replace(ROUTES[0], run=run)
+
+
+@pytest.mark.parametrize("time", TIMES)
+def test_a_wrong_covariance_of_the_right_gain_is_seen_by_simulation_alone(time, random_plant, monkeypatch):
+    monkeypatch.setattr(validation_module, "ROUTES", (with_covariance(1.3), ROUTES[-1]))
+    validation = validate(random_plant(time, 3))
+    simulation = validation.route("simulation")
+    assert simulation.disagrees
+    assert not simulation.agrees
+    assert re.match(r"disagrees: differs from riccati by \d+\.\d standard deviations", simulation.status)
+    assert validation.verdict is Verdict.DISAGREE
+
+
+def test_the_verdict_says_how_far_off_a_sample_is(monkeypatch):
+    monkeypatch.setattr(validation_module, "ROUTES", (with_covariance(1.3), ROUTES[-1]))
+    monkeypatch.setattr(validation_module, "attempt_certificate", lambda plant: CertificateOutcome("none"))
+    validation = validate(example_plant())
+    assert re.search(r"simulation differs from riccati by \d+\.\d standard deviations", verdict_line(validation))
+
+
+def test_a_sample_confirms_nothing(monkeypatch):
+    monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], ROUTES[-1]))
+    validation = validate(example_plant())
+    simulation = validation.route("simulation")
+    assert (simulation.agrees, simulation.confirms, simulation.status) == (True, False, "sampled")
+    assert simulation.residual > 1e-3
+    assert validation.confirming == ()
+    assert validation.verdict is Verdict.UNCONFIRMED
+
+
+def test_even_an_independent_sample_confirms_nothing(monkeypatch):
+    independent = replace(ROUTES[-1], independent_of=("riccati",))
+    monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], independent))
+    assert validate(example_plant()).verdict is Verdict.UNCONFIRMED
+
+
+def test_a_sample_beside_its_interval_is_neither(monkeypatch):
+    trace = ROUTES[-1].run(example_plant()).sample.trace
+    factor = (trace.value + 1.15 * trace.half_width) / ROUTES[0].run(example_plant()).P.trace()
+    monkeypatch.setattr(validation_module, "ROUTES", (with_covariance(factor), ROUTES[-1]))
+    simulation = validate(example_plant()).route("simulation")
+    assert (simulation.agrees, simulation.disagrees) == (False, False)
+    found = re.fullmatch(
+        r"sampled: (.*) standard deviations from riccati, outside its 99.9% interval", simulation.status
+    )
+    assert 3.3 < float(found[1]) < 6
+
+
+def test_one_wrong_variance_does_not_hide_behind_the_trace(monkeypatch):
+    def run(plant):
+        answer = ROUTES[0].run(plant)
+        return replace(answer, P=answer.P + np.diag([0.3, 0.0, 0.0, -0.3]))
+
+    monkeypatch.setattr(validation_module, "ROUTES", (replace(ROUTES[0], run=run), ROUTES[-1]))
+    assert validate(example_plant()).route("simulation").disagrees
+
+
+def test_what_riccati_is_not_sure_of_is_no_disagreement(monkeypatch):
+    doubtful = replace(ROUTES[0], run=lambda plant: replace(with_covariance(1.3).run(plant), error=np.inf))
+    monkeypatch.setattr(validation_module, "ROUTES", (doubtful, ROUTES[-1]))
+    monkeypatch.setattr(validation_module, "enclose", lambda plant: Enclosure("not attempted"))
+    simulation = validate(example_plant()).route("simulation")
+    assert (simulation.agrees, simulation.disagrees) == (False, False)
+
+
+def test_the_sample_is_in_the_data():
+    data = json.loads(json.dumps(validate(example_plant()).as_dict(), allow_nan=False))
+    route = data["routes"][-1]
+    lower, upper = route["interval"]
+    assert lower < data["routes"][0]["trace"] < upper
+    assert route["sample"]["level"] == 0.999
+    assert route["sample"]["cost_interval"] == pytest.approx(route["interval"])
+    assert len(route["sample"]["variance_intervals"]) == 4
+    assert route["sample"]["running"][-1]["interval"] == pytest.approx(route["sample"]["cost_interval"])
+    assert validate(example_plant()).as_dict()["routes"][-1]["interval"] == route["interval"]
+
+
+def test_solvers_say_how_they_converged():
+    routes = {route["name"]: route for route in validate(example_plant()).as_dict()["routes"]}
+    merits = routes["interior-point"]["history"]
+    assert merits[0] > 1e3 * merits[-1] > 0
+    assert routes["interior-point"]["iterations"] == len(merits) - 1
+    assert all(routes[name]["iterations"] > 0 for name in ("riccati", *CONVEX, "nlp"))
+    assert all(routes[name]["iterations"] is None for name in ("integral", "hamiltonian", "simulation"))
