@@ -9,6 +9,7 @@ from pathlib import Path
 
 from tests.benchmark.certificates import certificates
 from tests.benchmark.claims import claims
+from tests.benchmark.design import designs
 from tests.benchmark.enclosures import enclosures
 from tests.benchmark.page import write_page
 from tests.benchmark.programs import programs
@@ -22,6 +23,7 @@ from tests.benchmark.validate import validate
 SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "certificates": certificates,
     "claims": claims,
+    "design": designs,
     "enclosures": enclosures,
     "programs": programs,
     "prover": prover,

@@ -1,4 +1,4 @@
-"""`lmi design`: are the smallest H-infinity norms certified from both sides, and the optimal gains; how long it takes."""
+"""`lmi design`: are the smallest H-infinity norms certified from both sides, and the least costs; the time it takes."""
 
 from __future__ import annotations
 
