@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from derive.numeric.modes import format_mode, undetectable_mode
 from derive.numeric.plant import Plant
+from lmi.certificate_arithmetic import TooLargeError
 from lmi.certification import NotCertifiedError
 from lmi.synthesis_request import Request
 from lmi.synthesis_search import Judged, smallest_norm
@@ -50,7 +51,7 @@ def certify(plant: Plant, request: Request, found: Judged) -> tuple["DesignCerti
     for norm, floor in _claims(gamma, _floor(plant, request, found)):
         try:
             certificate = _certified(plant, found, request, norm, floor)
-        except NotCertifiedError as error:
+        except (NotCertifiedError, TooLargeError) as error:
             problems.append(str(error))
             continue
         if request.objective == "hinf":
@@ -143,6 +144,6 @@ def _decided(plant: Plant, reason: str, gamma: float | None = None, decay: float
 
     try:
         proof = certify_infeasible(plant, gamma=gamma, decay=decay)
-    except NotCertifiedError:
+    except (NotCertifiedError, TooLargeError):
         return Impossible(f"{reason}; not proved", False)
     return Impossible(f"{reason}; proved: {proof.reason}", True)
