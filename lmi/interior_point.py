@@ -153,13 +153,14 @@ def _packed_products(lefts: Matrix, rights: Matrix) -> Matrix:
     out = np.empty((len(rows), len(rows)))
     place = 0
     for i in range(n):
-        direct = (by_row[i] @ flat).reshape(n, n, n)[:, i:].transpose(1, 0, 2)  # [j, k, l] = X_ik Y'_jl
-        crossed = by_row[i:] @ turned[:, i, :]  # [j, k, l] = X_jk Y'_il
-        block = (direct + crossed).reshape(n - i, n * n)
-        out[place : place + n - i] = block[:, rows * n + columns] + block[:, columns * n + rows]
+        block = (by_row[i] @ flat).reshape(n, n, n)[:, i:].transpose(1, 0, 2)  # [j, k, l] = X_ik Y'_jl
+        block = block + by_row[i:] @ turned[:, i, :]  # [j, k, l] = X_jk Y'_il
+        block += block.transpose(0, 2, 1).copy()
+        block.reshape(n - i, n * n).take(rows * n + columns, axis=1, out=out[place : place + n - i], mode="clip")
         place += n - i
-    out *= weight[:, None] * weight[None, :]
-    return (out + out.T) / 2
+    out *= weight[:, None]
+    out *= weight
+    return out
 
 
 def _symmetric(X: Matrix) -> Matrix:
@@ -203,8 +204,9 @@ class _Step:
 
         self.cone, self.P, self.Z, self.S = cone, P, Z, S
         self.roots = np.linalg.cholesky(S), np.linalg.cholesky(Z)
-        self.inverse = _symmetric(cho_solve((self.roots[0], True), np.eye(len(S))))
-        self.factor = cho_factor(cone.normal_matrix(Z, self.inverse), lower=True, overwrite_a=True)
+        self.inverse = _symmetric(cho_solve((self.roots[0], True), np.eye(len(S)), check_finite=False))
+        normal = cone.normal_matrix(Z, self.inverse).T  # symmetric; in the order of LAPACK
+        self.factor = cho_factor(normal, lower=True, overwrite_a=True, check_finite=False)
         self.lacking = -np.eye(len(P)) - cone.adjoint(Z)
         self.slack = _symmetric(cone.J + cone.linear(P) - S)
 
@@ -239,7 +241,7 @@ class _Step:
 
         rows, columns = np.triu_indices(len(rhs))
         weight = np.where(rows == columns, 1.0, np.sqrt(2.0))
-        x = cho_solve(self.factor, rhs[rows, columns] * weight) / weight
+        x = cho_solve(self.factor, rhs[rows, columns] * weight, check_finite=False) / weight
         out = np.zeros_like(rhs)
         out[rows, columns] = out[columns, rows] = x
         return out
