@@ -46,10 +46,15 @@ class Decay:
 
 @dataclass(frozen=True)
 class Norm:
-    """What is claimed to bound the H-infinity norm of the gain: gamma and P (n, n)."""
+    """What is claimed to bound the H-infinity norm of the gain: gamma and P (n, n), in discrete time any G (n, n).
+
+    The inequality is multiplied by [[I, -G], [0, I]] and its transpose before it is decided. That does not change its
+    sign, and makes it almost block diagonal for G = (A - L C)(I - gamma^-2 P M)^-1.
+    """
 
     gamma: Fraction
     P: Exact
+    G: Exact | None = None
 
 
 @dataclass(frozen=True)
@@ -78,18 +83,23 @@ class DesignCertificate:
     floor: Floor | None = None
 
     def __post_init__(self) -> None:
-        n, square = self.plant.n, (self.plant.n, self.plant.n)
+        n = self.plant.n
+        square = (n, n)
         if self.decay is not None:
             require_shape("decay.Y", self.decay.Y, square, symmetric=True)
         if self.norm is not None:
             require_shape("norm.P", self.norm.P, square, symmetric=True)
+            self._require_discrete("norm.G", self.norm.G)
         if self.floor is not None:
             require_shape("floor.Z", self.floor.Z, square, symmetric=True)
             require_shape("floor.H", self.floor.H, (n, n))
-            if (self.floor.K is None) != self.plant.is_continuous:
-                raise InputError("floor.K: expected in discrete time and only there; change time or the floor")
-            if self.floor.K is not None:
-                require_shape("floor.K", self.floor.K, square)
+            self._require_discrete("floor.K", self.floor.K)
+
+    def _require_discrete(self, name: str, X: Exact | None) -> None:
+        if (X is None) != self.plant.is_continuous:
+            raise InputError(f"{name}: expected in discrete time and only there; change the time or make it anew")
+        if X is not None:
+            require_shape(name, X, (self.plant.n, self.plant.n))
 
     @property
     def plant(self) -> ExactPlant:
@@ -196,9 +206,11 @@ def norm_checks(plant: ExactPlant, gain: Exact, norm: Norm) -> tuple[Check, ...]
     PMP = P @ plant.M @ P * (1 / norm.gamma**2)
     if plant.is_continuous:
         return (Check("G_L(P) + PMP/gamma^2 <= 0", is_semidefinite(-(plant.defect(gain, P) + PMP))),)
-    moved = plant.loop(gain) @ P
+    moved, G = plant.loop(gain) @ P, norm.G or Exact.identity(plant.n) * Fraction(0)
     noise = plant.defect(gain, P) - plant.drift(plant.loop(gain), P)
-    block = symmetric_block(P - noise, moved, P - PMP)
+    crossed = moved @ G.T
+    corner = P - noise - crossed - crossed.T + G @ (P - PMP) @ G.T
+    block = symmetric_block(corner, moved - G @ (P - PMP), P - PMP)
     return (Check("[[P - J_L, (A - LC)P], [P(A - LC)', P - PMP/gamma^2]] >= 0", is_semidefinite(block)),)
 
 

@@ -70,6 +70,8 @@ def design_from_dict(data: Any) -> Design:
         raise InputError(f'schema: expected "{DESIGN}", got {shown(data["schema"])}; it is another kind of file')
     objective = data["objective"]
     require_keys("objective", objective, ("name",), ("gamma", "decay", "dual"))
+    if not isinstance(objective["name"], str):
+        raise InputError(f'objective.name: expected a text, got {shown(objective["name"])}; write "hinf"')
     dual = objective.get("dual", False)
     if not isinstance(dual, bool):
         raise InputError(f"objective.dual: expected true or false, got {shown(dual)}; choose one")
@@ -108,7 +110,7 @@ def _certificate(data: Any, plant: ExactPlant, gain: Exact) -> DesignCertificate
     certificate = DesignCertificate(
         cost,
         None if decay is None else Decay(*_with_number("decay", decay, _bound(plant), "Y")),
-        None if norm is None else Norm(*_with_number("norm", norm, "gamma", "P")),
+        None if norm is None else Norm(*_with_number("norm", norm, "gamma", *_norm_keys(plant))),
         None if floor is None else Floor(*_matrices("floor", floor, _floor_keys(plant))),
     )
     require_size(plant, _all_matrices(certificate))
@@ -117,6 +119,10 @@ def _certificate(data: Any, plant: ExactPlant, gain: Exact) -> DesignCertificate
 
 def _bound(plant: ExactPlant) -> str:
     return "rate" if plant.is_continuous else "radius"
+
+
+def _norm_keys(plant: ExactPlant) -> tuple[str, ...]:
+    return ("P",) if plant.is_continuous else ("P", "G")
 
 
 def _floor_keys(plant: ExactPlant) -> tuple[str, ...]:
@@ -128,10 +134,11 @@ def _matrices(name: str, data: Any, keys: tuple[str, ...]) -> list[Exact]:
     return [read_matrix(f"certificate.{name}.{key}", data[key]) for key in keys]
 
 
-def _with_number(name: str, data: Any, number: str, matrix: str) -> tuple[Fraction, Exact]:
-    require_keys(f"certificate.{name}", data, (number, matrix))
+def _with_number(name: str, data: Any, number: str, *matrices: str) -> tuple[Any, ...]:
+    """Read a rational and matrices."""
+    require_keys(f"certificate.{name}", data, (number, *matrices))
     value = read_rational(f"certificate.{name}.{number}", data[number])
-    return value, read_matrix(f"certificate.{name}.{matrix}", data[matrix])
+    return value, *(read_matrix(f"certificate.{name}.{key}", data[key]) for key in matrices)
 
 
 def _all_matrices(certificate: DesignCertificate) -> list[Exact]:
@@ -140,7 +147,7 @@ def _all_matrices(certificate: DesignCertificate) -> list[Exact]:
     if decay is not None:
         found += [decay.Y, Exact.of([[decay.bound]])]
     if norm is not None:
-        found += [norm.P, Exact.of([[norm.gamma]])]
+        found += [norm.P, Exact.of([[norm.gamma]]), *([] if norm.G is None else [norm.G])]
     if floor is not None:
         found += [X for X in (floor.Z, floor.H, floor.K) if X is not None]
     return found
@@ -175,7 +182,8 @@ def design_certificate_dict(certificate: DesignCertificate) -> dict[str, Any]:
     if decay is not None:
         data["decay"] = {_bound(certificate.plant): written(decay.bound), "Y": rows_of(decay.Y)}
     if norm is not None:
-        data["norm"] = {"gamma": written(norm.gamma), "P": rows_of(norm.P)}
+        matrices = {key: rows_of(getattr(norm, key)) for key in _norm_keys(certificate.plant)}
+        data["norm"] = {"gamma": written(norm.gamma), **matrices}
     if floor is not None:
         data["floor"] = {key: rows_of(getattr(floor, key)) for key in _floor_keys(certificate.plant)}
     return data

@@ -15,10 +15,11 @@ from math import exp, frexp, isfinite, nextafter
 from typing import Any
 
 import numpy as np
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, ctx, fmpq
 from numpy.typing import NDArray
 
-from derive.numeric.balls import floats, identity, middle, norm, positive_definite, working_bits
+from derive.numeric.balls import exact, floats, identity, middle, norm, positive_definite, working_bits
+from derive.numeric.lyapunov import solve_lyapunov
 from derive.numeric.modes import Time
 from derive.numeric.newton import lyapunov_in_balls
 from derive.numeric.norms import hinf_norm
@@ -35,17 +36,20 @@ __all__ = ["Coordinates", "certify_design"]
 
 Matrix = NDArray[np.floating[Any]]
 
-PRECISIONS = (320, 640)
-"""Working precisions in bits, tried in this order."""
+PRECISION = 320
+"""Working precision in bits of a decay's witness."""
 
-MARGIN_BITS = (90, 180)
-"""The inequality of a norm holds with a margin of 2^-k beyond what its second order needs, one for each precision."""
+ATTEMPTS = ((160, 8), (320, 40), (640, 120))
+"""Working precision in bits of a norm's witness, and bits by which h is smaller than its second order asks for."""
 
 SPARE = 24
 """Bits by which the grid is finer than the inequalities need."""
 
 STEPS = 60
 """Newton steps: where the norm is close to gamma, each gains one bit until the last few."""
+
+ROUGH_RTOL = 1e-6
+"""Steps smaller than this, relative, are not taken in floating point when they stop getting smaller."""
 
 DECAY_SHARES = (1e-7, 1e-4, 1e-2)
 """By how much less than the rate of the slowest mode is claimed, relative; the first that can be proved is taken."""
@@ -130,6 +134,12 @@ class Coordinates:
             ]
         )
 
+    def loop(self, X: arb_mat, bits: int) -> Exact:
+        """Return s X s^-1, X rounded to multiples of 2^-bits."""
+        n = len(self.exponents)
+        inverse = [[Fraction(2) ** -self.exponents[i] if i == j else 0 for j in range(n)] for i in range(n)]
+        return self.grid.gain(X, bits) @ Exact.of(inverse)
+
     @property
     def grid(self) -> Grid:
         """Rationals in the plant's coordinates from balls in these."""
@@ -176,7 +186,7 @@ def _radii(plant: Plant, loop: Matrix, asked: float | None) -> Iterator[Fraction
 
 def _decay_witness(cost: Certificate, bound: Fraction) -> Decay:
     coordinates = Coordinates.of_covariance(cost.P_up)
-    with working_bits(PRECISIONS[0]):
+    with working_bits(PRECISION):
         loop = coordinates.balls(cost.plant.loop(cost.gain), -1, 1)
         number = arb(fmpq(bound.numerator, bound.denominator))
         loop = loop + identity(loop.nrows()) * number if cost.plant.is_continuous else loop * (1 / number)
@@ -207,7 +217,7 @@ def _norm(cost: Certificate, asked: float | None) -> Norm | None:
     problem = f"{failing[0]} does not hold" if failing else "no proof found"
     if not failing:
         for gamma in _levels(plant, cost.gain, asked):
-            for bits, margin in zip(PRECISIONS, MARGIN_BITS, strict=True):
+            for bits, margin in ATTEMPTS:
                 try:
                     found = _norm_witness(plant, cost, gamma, bits, margin)
                 except (ArithmeticError, ValueError):
@@ -262,8 +272,9 @@ def _norm_witness(plant: ExactPlant, cost: Certificate, gamma: Fraction, bits: i
         loop = equation.closed_loop(P)
         D = _witness(loop, identity(P.nrows()), plant.time)
         size = binary_logarithm(norm(D))
-        k = margin + max(size, 2 * size + binary_logarithm(norm(equation.M)), 0)
-        return Norm(gamma, coordinates.grid.covariance(P + D * arb(2) ** -k, k + sizes(loop) + margin))
+        k = margin + max(size, 2 * size + binary_logarithm(norm(equation.second_order(P, loop))), 0)
+        G = None if plant.is_continuous else coordinates.loop(loop, k + SPARE)
+        return Norm(gamma, coordinates.grid.covariance(P + D * arb(2) ** -k, k + sizes(loop) + SPARE), G)
 
 
 @dataclass(frozen=True, eq=False)
@@ -295,20 +306,48 @@ class BoundedReal:
             return (self.loop + P * self.M).mid()
         return (self.loop * (identity(P.nrows()) - P * self.M).inv()).mid()
 
+    def second_order(self, P: arb_mat, loop: arb_mat) -> arb_mat:
+        """Return what the residual's second order consists of, between D and D: M, in discrete time with loops."""
+        if self.time == "continuous":
+            return self.M
+        return loop * loop.transpose() * norm(self.M * (identity(P.nrows()) - P * self.M).inv())
+
     def solution(self) -> arb_mat:
-        """Return the stabilising solution by Newton's method from 0.
+        """Return the stabilising solution by Newton's method from 0, at first in floating point.
 
         Raises:
             NotCertifiedError: there is none, or too nearly so.
         """
-        n = self.loop.nrows()
-        P, before = arb_mat(n, n), None
+        try:
+            return self._newton(exact(self._approximate()))
+        except NotCertifiedError:
+            return self._newton(arb_mat(self.loop.nrows(), self.loop.nrows()))
+
+    def _newton(self, P: arb_mat) -> arb_mat:
+        before = None
         for _ in range(STEPS):
             D = _lyapunov(self.closed_loop(P), middle(self.residual(P)), self.time)
             P, step = middle(P + D), norm(D)
+            if step <= norm(P) * arb(2) ** (16 - ctx.prec):
+                break
             if before is not None and not step < before and step < norm(P) * arb(2) ** -60:
                 break
             before = step
+        return P
+
+    def _approximate(self) -> Matrix:
+        loop, G, M = (exact(floats(X)) for X in (self.loop, self.G, self.M))
+        rough = BoundedReal(loop, G, M, self.time)
+        P, before = np.zeros((self.loop.nrows(),) * 2), np.inf
+        for _ in range(STEPS):
+            loop = floats(rough.closed_loop(exact(P)))
+            if not is_stable(loop, self.time):
+                break
+            D = solve_lyapunov(loop, floats(middle(rough.residual(exact(P)))), self.time)
+            step = float(np.linalg.norm(D))
+            if not step < before and step <= ROUGH_RTOL * np.linalg.norm(P):
+                break
+            P, before = P + (D + D.T) / 2, step
         return P
 
 

@@ -40,8 +40,11 @@ Matrix = NDArray[np.floating[Any]]
 BITS = 320
 """Working precision."""
 
-MARGIN_BITS = 50
-"""R = v v' + 2^-k I: what rounding may take away."""
+LOSS_BITS = 30
+"""R = v v' + 2^-k I with a k that lowers the bound by about 2^-30, relative: what rounding may take away."""
+
+MARGIN_BITS = 120
+"""Largest k."""
 
 SPARE = 16
 """Bits by which the grid is finer than that."""
@@ -118,13 +121,15 @@ class Level:
     Attributes:
         H: P^-1 (n, n).
         K: U F'H (n, n); None in continuous time.
-        v: of R = v v' (n,), |v| = 1.
+        v: of R = v v' + 2^-margin I (n,), |v| = 1.
+        margin: in bits.
         bound: of the norm of every gain.
     """
 
     H: Matrix
     K: Matrix | None
     v: Matrix
+    margin: int
     bound: float
 
 
@@ -213,27 +218,29 @@ class Filtering:
         paid = paid + 1e-14 * np.linalg.norm(paid, 2) * np.eye(len(paid))
         values, vectors = cast(tuple[Matrix, Matrix], eigh(gained, paid))
         v = vectors[:, -1] / np.linalg.norm(vectors[:, -1])
-        return Level(H, K, v, self.unit * float(np.sqrt(max(values[-1], 0.0))))
+        margin = LOSS_BITS + int(np.ceil(np.log2(max(np.trace(paid) / (v @ paid @ v), 1.0))))
+        return Level(H, K, v, min(margin, MARGIN_BITS), self.unit * float(np.sqrt(max(values[-1], 0.0))))
 
     def certificate(self, level: Level) -> Floor:
         """Bring H and K to the plant's coordinates, exactly, and solve for Z in high precision."""
         n, grid = self.plant.n, Grid(self.exponents)
         H = self._moved(level.H, -1, -1)
         K = None if level.K is None else self._moved(level.K, 1, -1)
-        R = exact(np.outer(level.v, level.v)) + identity(n) * arb(2) ** -MARGIN_BITS
+        v = exact(level.v[:, None])
+        R = v * v.transpose() + identity(n) * arb(2) ** -level.margin
         F, q = self._balls(self.exact.A, -1, 1), self._balls(self.exact.W, -1, -1)
         H_balls = exact(level.H)
         if level.K is None:
             T = (F + q * H_balls) * (1 / arb(self.rate))
             Z = middle(lyapunov_in_balls((-T).mid(), R, "continuous"))
-            return Floor(grid.covariance(Z, MARGIN_BITS + sizes(T) + SPARE), H)
+            return Floor(grid.covariance(Z, level.margin + sizes(T) + SPARE), H)
         K_balls = exact(level.K)
         excess = F * K_balls + q * H_balls - identity(n)
         Z = middle(lyapunov_in_balls(K_balls, R, "discrete"))
         for _ in range(8):
             correction = excess * Z
             Z = middle(lyapunov_in_balls(K_balls, middle(R - correction - correction.transpose()), "discrete"))
-        return Floor(grid.covariance(Z, MARGIN_BITS + sizes(K_balls) + SPARE), H, K)
+        return Floor(grid.covariance(Z, level.margin + sizes(K_balls) + SPARE), H, K)
 
     def _moved(self, X: Matrix, left: int, right: int) -> Exact:
         """Return t^left X t^right as rationals."""

@@ -72,15 +72,13 @@ def design(request):
 
 
 def design_of(time):
-    data = data_of(time)
-    certificate = certify_design(as_plant(data), np.array(GAINS[time]), floor=FLOORS[time])
     return {
         "schema": "lmi-design/1",
-        "plant": data,
+        "plant": data_of(time),
         "objective": {"name": "hinf", "gamma": None, "decay": None, "dual": False},
         "gain": GAINS[time],
         "achieved": {},
-        "certificate": certificate.as_dict(),
+        "certificate": design_certificate(time).as_dict(),
     }
 
 
@@ -145,7 +143,7 @@ def mutants(design):
             value = float(new) if isinstance(old, float) else f"{new.numerator}/{new.denominator}"
             at(mutant, path[:-1])[path[-1]] = value
             i, j = path[-2:]
-            if isinstance(i, int) and path[-3] not in ("A", "C", "N", "gain", "H", "K"):
+            if isinstance(i, int) and path[-3] not in ("A", "C", "N", "gain", "H", "K", "G"):
                 at(mutant, path[:-2])[j][i] = value
             yield mutant
 
@@ -310,14 +308,15 @@ def test_noise_semidefinite_but_for_rounding_is_enlarged_and_that_is_said(time, 
     assert "the noise matrix is not exactly semidefinite: H-infinity norms are those with" in result.stdout
 
 
-@pytest.mark.parametrize(
-    ("part", "key"), [("decay", "Y"), ("norm", "P"), ("floor", "Z"), ("floor", "H"), ("floor", "K")]
-)
+PARTS = [("decay", "Y"), ("norm", "P"), ("norm", "G"), ("floor", "Z"), ("floor", "H"), ("floor", "K")]
+
+
+@pytest.mark.parametrize(("part", "key"), PARTS)
 def test_shapes_and_symmetry_are_required(certificate, part, key):
     value = getattr(certificate, part)
     if getattr(value, key) is None:
-        with pytest.raises(InputError, match=r"^floor.K: expected in discrete time"):
-            replace(certificate, floor=replace(value, K=Exact.identity(2)))
+        with pytest.raises(InputError, match=f"^{part}.{key}: expected in discrete time"):
+            replace(certificate, **{part: replace(value, **{key: Exact.identity(2)})})
         return
     with pytest.raises(InputError, match=f"^{part}.{key}: expected shape"):
         replace(certificate, **{part: replace(value, **{key: Exact.of([[1]])})})
@@ -325,9 +324,21 @@ def test_shapes_and_symmetry_are_required(certificate, part, key):
         skew = getattr(value, key) + Exact.of([[0, 1], [0, 0]])
         with pytest.raises(InputError, match=f"^{part}.{key}: expected a symmetric"):
             replace(certificate, **{part: replace(value, **{key: skew})})
-    if key == "K":
-        with pytest.raises(InputError, match=r"^floor.K: expected in discrete time"):
-            replace(certificate, floor=replace(value, K=None))
+    if key in ("G", "K"):
+        with pytest.raises(InputError, match=f"^{part}.{key}: expected in discrete time"):
+            replace(certificate, **{part: replace(value, **{key: None})})
+
+
+def test_the_congruence_of_a_norm_changes_nothing_but_the_time_it_takes():
+    certificate = design_certificate("discrete")
+    for gamma, holds in ((certificate.norm.gamma, True), (certificate.norm.gamma * Fraction(999, 1000), False)):
+        for G in (certificate.norm.G, Exact.of([[0, 0], [0, 0]]), Exact.of([[5, -3], [Fraction(1, 7), 2]])):
+            checks, _ = verify_design(replace(certificate, norm=replace(certificate.norm, gamma=gamma, G=G)))
+            assert all(check.holds for check in checks) == holds
+
+
+def design_certificate(time):
+    return certify_design(as_plant(data_of(time)), np.array(GAINS[time]), floor=FLOORS[time])
 
 
 def test_the_cross_term_is_removed_exactly():

@@ -156,11 +156,11 @@ def test_switching_the_time_of_a_file_is_rejected_or_malformed(design, run):
     assert run(design).exit_code == 2
     decay = design["certificate"]["decay"]
     decay["radius" if time == "continuous" else "rate"] = decay.pop("rate" if time == "continuous" else "radius")
-    floor = design["certificate"]["floor"]
+    norm, floor = design["certificate"]["norm"], design["certificate"]["floor"]
     if time == "continuous":
-        floor["K"] = floor["H"]
+        norm["G"] = floor["K"] = floor["H"]
     else:
-        del floor["K"]
+        del norm["G"], floor["K"]
     result = run(design)
     assert result.exit_code == 1
     assert result.stdout.startswith("rejected: ")
@@ -204,7 +204,7 @@ def test_what_takes_too_long_is_not_certified(design, run, monkeypatch):
 
 
 def test_longer_integers_than_are_decided_quickly_are_refused(design, run, monkeypatch):
-    monkeypatch.setattr(file_module, "SIZE", 500)
+    monkeypatch.setattr(file_module, "SIZE", 300)
     result = run(design)
     assert result.exit_code == 2
     assert "fewer digits" in result.stderr
