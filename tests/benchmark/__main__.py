@@ -11,6 +11,7 @@ from tests.benchmark.certificates import certificates
 from tests.benchmark.claims import claims
 from tests.benchmark.design import designs
 from tests.benchmark.enclosures import enclosures
+from tests.benchmark.gain import gain
 from tests.benchmark.page import write_page
 from tests.benchmark.programs import programs
 from tests.benchmark.prover import prover
@@ -25,6 +26,7 @@ SECTIONS: dict[str, Callable[[], list[Row]]] = {
     "claims": claims,
     "design": designs,
     "enclosures": enclosures,
+    "gain": gain,
     "programs": programs,
     "prover": prover,
     "riccati": riccati,
