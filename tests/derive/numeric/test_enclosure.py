@@ -22,10 +22,11 @@ from derive.numeric.balls import (
     widened,
     working_bits,
 )
+from derive.numeric.doubling import stabilising_start
 from derive.numeric.enclosure import enclose_riccati, encloses, verify_riccati
 from derive.numeric.log_det import enclose_log_det
 from derive.numeric.lyapunov import solve_lyapunov
-from derive.numeric.modes import format_mode
+from derive.numeric.modes import distance_to_stability, format_mode
 from derive.numeric.newton import Equation, lyapunov_in_balls, prove, refined
 from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
@@ -256,6 +257,26 @@ def test_newton_in_balls_needs_no_double_precision(time):
         equation = Equation.of(plant)
         P = refined(equation, equation.scaled(start), in_balls=True)
         assert prove(equation, P).radius < 1e-60
+
+
+@pytest.mark.parametrize("time", TIMES)
+@pytest.mark.parametrize("kind", ["random", "without noise", "defective"])
+def test_doubling_solves_the_equation_with_a_little_more_noise(time, kind):
+    """R(P) = -e I, e small but not 0, and the closed loop is stable, whatever the noise excites."""
+    plant = random_plant(time, 4, 2, seed=3)
+    if kind != "random":
+        plant = replace(plant, W=np.zeros((4, 4)), N=np.zeros((4, 2)))
+    if kind == "defective":
+        plant = replace(plant, A=1.5 * np.eye(4) + np.eye(4, k=1), C=np.eye(2, 4))
+    with working_bits(256):
+        equation = Equation.of(plant)
+        P = stabilising_start(equation)
+        residual = equation.residual(P)
+        e = -residual[0, 0].mid()
+        assert e > 0
+        assert norm(residual + identity(4) * e) < 1e-30 * e
+        loop = np.linalg.eigvals(floats(equation.closed_loop(P)))
+    assert distance_to_stability(loop, time).max() < 0
 
 
 def test_helpers():

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import derive.numeric.riccati as riccati_module
 from derive.numeric.boundary import unexcited_boundary
 from derive.numeric.enclosure import enclose_riccati
 from derive.numeric.extended import cholesky, divided, forward
@@ -275,6 +276,21 @@ def test_the_condition_number_is_a_bound(time):
             moved = solve_riccati(replace(plant, **{key: changed})).P - solution.P
             relative = np.linalg.norm(moved, 2) / np.linalg.norm(solution.P, 2) / 1e-6
             assert 1e-3 * solution.condition < relative < solution.condition
+
+
+def test_floating_point_alone_does_not_decide_beside_the_boundary(monkeypatch):
+    """An indefinite W puts the closed loop at j and -j; its computed eigenvalues are stable, by 3e-10."""
+    W = -np.array([[11.0, 5.0], [5.0, 2.0]])
+    plant = replace(continuous(A=[[3, 4], [1, 2]], C=[[1, 1]], W=NOTHING, V=1), W=W)
+    for largest in (64, 1):
+        monkeypatch.setattr(riccati_module, "LARGEST", largest)
+        solution = solve_riccati(plant)
+        assert (solution.status, np.isinf(solution.condition), np.isinf(solution.relative_error)) == (
+            "failed",
+            True,
+            True,
+        )
+        assert solution.reason.endswith("1j on the boundary or too near to tell")
 
 
 def test_modes_near_the_boundary_are_named():
