@@ -149,7 +149,7 @@ def design(
 )
 @click.option("-o", "--output", metavar="FILE", help="Where to write the certificate of --gain.")
 def certify(file: str | None, plant: str | None, gain: str | None, output: str | None) -> int:
-    """Verify the certificate FILE in integers and print what it proves, or certify a gain for a plant.
+    """Verify FILE, a certificate or a design, in integers and print what it proves, or certify a gain for a plant.
 
     Nothing in FILE is believed: the inequalities are decided and the bounds computed from its matrices. With --plant
     and --gain instead of FILE, a bound on the gain is proved, or that it does not stabilise.
