@@ -32,8 +32,8 @@ __all__ = ["Decay", "DesignBounds", "DesignCertificate", "Floor", "Norm", "prope
 ENLARGEMENTS = (0, 50, 44, 36)
 """Bits k: a noise or weight that fails to be semidefinite has its diagonal enlarged by a relative 2^-k; 0 for not."""
 
-OUTPUTS = 60
-"""Outputs up to which the exact inverse of V takes seconds."""
+INVERSE_WORK = 4 * 10**9
+"""Most outputs to the fourth power times bits for which V is inverted exactly: about a minute."""
 
 
 @dataclass(frozen=True)
@@ -241,20 +241,21 @@ def reduced_noise(plant: ExactPlant) -> tuple[Exact, Exact, Exact]:
 
 
 def _inverse(V: Exact) -> Exact:
-    """Invert a positive definite matrix by elimination.
+    """Invert a positive definite matrix by fraction-free elimination: with B the integers of V, B^-1 = adj B / det B.
 
     Raises:
-        TooLargeError: more than `OUTPUTS` rows.
+        TooLargeError: it would take too long.
     """
     n = V.shape[0]
-    if n > OUTPUTS:
-        raise TooLargeError(f"{n} outputs are too many to invert V exactly, which is done for up to {OUTPUTS}")
-    rows = [[*(V[i, j] for j in range(n)), *(Fraction(int(i == j)) for j in range(n))] for i in range(n)]
-    for k in range(n):
-        pivot = rows[k][k]
-        rows[k] = [x / pivot for x in rows[k]]
+    if n**4 * V.bits > INVERSE_WORK:
+        raise TooLargeError(f"the noise of {n} outputs takes too long to invert exactly")
+    rows = [[*row, *(int(i == j) for j in range(n))] for i, row in enumerate(V.numerators)]
+    before = 1
+    for k, row in enumerate(rows):
+        pivot = row[k]
         for i in range(n):
-            factor = rows[i][k]
-            if i != k and factor:
-                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
-    return Exact.of([row[n:] for row in rows])
+            if i != k:
+                factor = rows[i][k]
+                rows[i] = [(pivot * x - factor * y) // before for x, y in zip(rows[i], row, strict=True)]
+        before = pivot
+    return Exact.of([[Fraction(x * V.denominator, before) for x in row[n:]] for row in rows])
