@@ -14,7 +14,10 @@ from derive.numeric.quadrature import Quadrature, integrate
 __all__ = ["HamiltonianResult", "IntegralResult", "hamiltonian_route", "output_cost", "output_error_integral"]
 
 INTEGRAL_RTOL = 1e-13
-CHUNK = 2048
+BLOCK = 16
+"""Columns that are solved for together."""
+
+CHUNK = 512
 """Frequencies evaluated at a time, which bounds the memory."""
 
 
@@ -189,11 +192,16 @@ class _Spectrum:
         return 1 / (turn * gap)
 
     def _rows(self, poles: NDArray[Any]) -> NDArray[Any]:
-        """Return C (s - T)^-1 (k, l, n) column by column."""
-        X = np.empty((len(poles), *self.C.shape), complex)
-        for j in range(len(self.T)):
-            X[:, :, j] = (self.C[:, j] + X[:, :, :j] @ self.T[:j, j]) * poles[:, j, None]
-        return X
+        """Return C (s - T)^-1 (k, l, n) column by column, each block of them from the columns before it at once."""
+        k, (l, n) = len(poles), self.C.shape  # noqa: E741
+        X = np.empty((n, l * k), complex)
+        for first in range(0, n, BLOCK):
+            last = min(first + BLOCK, n)
+            X[first:last] = self.T[:first, first:last].T @ X[:first] + np.repeat(self.C[:, first:last].T, k, axis=1)
+            for j in range(first, last):
+                X[j] += self.T[first:j, j] @ X[first:j]
+                X[j] *= np.tile(poles[:, j], l)
+        return X.reshape(n, l, k).transpose(2, 1, 0)
 
     def _columns(self, poles: NDArray[Any]) -> NDArray[Any]:
         """Return (s - T)^-1 G (k, n, q) row by row."""
