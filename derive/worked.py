@@ -94,7 +94,7 @@ def _mode_figure(plant: Plant, response: Response) -> Figure:
 
 def _deviation_figure(plant: Plant, response: Response) -> Figure:
     shown = min(plant.n, NAMED)
-    steady = response.steady.diagonal()[:shown] ** 0.5
+    steady = response.steady.diagonal()[:shown].clip(min=0.0) ** 0.5
     labels = drawn_labels(plant)[:shown]
     svg = deviations_over_time(response.times, response.deviations[:, :shown], steady, labels, time_label(plant))
     start = "P0" if plant.P0 is not None else "twice the steady value"

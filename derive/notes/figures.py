@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from io import StringIO
@@ -19,7 +20,7 @@ __all__ = [
 
 COLOURS = ("#1a5fb4", "#c64600", "#26a269", "#813d9c", "#986a44", "#5e5c64")
 STYLE: Any = {
-    "font.family": "STIXGeneral",
+    "font.family": ["STIXGeneral", "DejaVu Sans"],  # the second for what the first lacks
     "mathtext.fontset": "stix",
     "font.size": 11,
     "axes.spines.top": False,
@@ -181,7 +182,9 @@ def drawing(
 def as_svg(figure: Figure) -> str:
     """Return a drawing as the text of its svg element."""
     out = StringIO()
-    figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from", UserWarning)  # of a name; a box is drawn
+        figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None, "Creator": None})
     return _compact(out.getvalue()[out.getvalue().index("<svg") :])
 
 

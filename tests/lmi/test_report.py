@@ -228,6 +228,14 @@ def test_what_cannot_be_drawn_takes_nothing_else_with_it(track, tmp_path, monkey
     assert {"simulation", "spectrum", "convergence"} <= set(Page(text).anchors)
 
 
+def test_names_that_no_font_has_are_drawn_all_the_same(tmp_path):
+    names = ["$x_{\u5024", "<b>"]
+    _, text, page = written({**TRACK, "states": names, "units": {"<b>": "rad/s^-1"}}, tmp_path)
+    assert [row[0] for row in page.table(["state", "standard deviation"])] == ["$x_{\u5024", "<b> [rad/s⁻¹]"]
+    assert "b" not in page.tags[page.tags.index("main") :]
+    assert "Not drawn" not in text
+
+
 # ------------------------------------------------------------------------------------------------ the file
 @pytest.fixture
 def plant_file(tmp_path):
