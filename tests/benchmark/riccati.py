@@ -13,9 +13,11 @@ from derive.numeric.enclosure import RiccatiEnclosure, enclose_riccati
 from derive.numeric.modes import Matrix
 from derive.numeric.plant import Plant
 from derive.numeric.riccati import solve_riccati
+from lmi.validation import validate
 from tests.benchmark.certificates import HARD, hard_plants
 from tests.benchmark.published import COLLECTIONS, Collection, Example, published
 from tests.benchmark.table import Row
+from tests.derive.numeric.plants import random_plant
 
 Solver = Callable[[Plant], Matrix]
 
@@ -32,7 +34,7 @@ LARGEST = 100
 """States up to which solutions are enclosed."""
 
 SECONDS = 60.0
-"""Time allowed for an example of several hundred states."""
+"""Time allowed for several hundred states."""
 
 
 def riccati() -> list[Row]:
@@ -40,7 +42,7 @@ def riccati() -> list[Row]:
     rows = [row for name in COLLECTIONS if any(published(name)) for row in _collection(name)]
     if not rows:
         rows = [Row("CAREX and DAREX", "not measured: DERIVE_BENCH names no folder of them", "set DERIVE_BENCH", True)]
-    return rows + _on_hard_plants()
+    return rows + _on_hard_plants() + [_two_hundred(kind) for kind in ("continuous", "discrete")]
 
 
 @dataclass
@@ -219,3 +221,16 @@ def _on_hard_plants() -> list[Row]:
         cases.append((name, plant, lambda P, enclosure=enclosure, size=size: enclosure.distance(P) / size))
     named = f"{HARD} hard plants, n = 1..20"
     return [_our_row(named, ours), *(_peer_row(f"{named}, {peer}", _theirs(f, cases)) for peer, f in _peers())]
+
+
+def _two_hundred(kind: str) -> Row:
+    """Validate a plant of 200 states, of which the routes that answer have to agree."""
+    start = time.process_time()
+    validation = validate(random_plant(kind, 200, 20, seed=1))
+    seconds = time.process_time() - start
+    agreeing = [route.name for route in validation.routes if route.agrees]
+    others = {route.status for route in validation.routes if not route.agrees}
+    value = f"{', '.join(agreeing)} agree, certificate {validation.certificate.status}, {seconds:.0f} s"
+    named = all(status.startswith("not ") for status in others)
+    ok = {"riccati", "integral"} <= set(agreeing) and named and seconds <= SECONDS
+    return Row(f"lmi validate, {kind}, n = 200", value, f"Riccati and the integral, the rest named, {SECONDS:g} s", ok)
