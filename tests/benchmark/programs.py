@@ -47,7 +47,7 @@ def programs() -> list[Row]:
 # ------------------------------------------------------------------------------------------------ hard plants
 @dataclass
 class _Tally:
-    """Errors of one route in tr(M P), without cancellation and relative to it, and the plants that they are large on."""
+    """Errors of one route, of tr(M P) without cancellation and relative to it, and the plants where they are large."""
 
     errors: list[float] = field(default_factory=list)
     beyond: list[str] = field(default_factory=list)
