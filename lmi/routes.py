@@ -127,8 +127,9 @@ def _program(build: Callable[[Plant], Program], largest: int) -> Callable[[Plant
         solution = solve_covariance(plant, build)
         outcome = solution.outcome
         if solution.P is None or solution.gain is None:
-            tried = "; ".join(f"{solver}: {status.value}" for solver, status in dict.fromkeys(solution.tried))
-            return Answer(f"{outcome.status.value} (solver: {outcome.raw_status}; tried {tried})")
+            others = [solver for solver, _ in solution.tried if solver != outcome.solver]
+            tried = f"; tried in vain: {', '.join(others)}" if others else ""
+            return Answer(f"{outcome.status.value} ({outcome.solver}: {outcome.raw_status}{tried})")
         error = solution.error if outcome.status is Status.SOLVED else None
         answer = _covariance(plant, solution.status, solution.P, solution.gain, error)
         return replace(answer, iterations=outcome.iterations)

@@ -111,8 +111,8 @@ def solve_program(program: Program, accuracy: Accuracy = TO_THE_LAST_DIGIT, solv
         return _judged(problem, solver)
 
 
-_BREAKDOWNS = (ArithmeticError, ValueError, TypeError)
-"""What CVXOPT raises when its numbers run out."""
+_BREAKDOWNS = (ArithmeticError, RuntimeError, TypeError, ValueError)
+"""What CVXOPT and its preparation in CVXPY raise when their numbers run out."""
 
 _OPTIONS: dict[str, Callable[[Accuracy], dict[str, Any]]] = {
     "CLARABEL": lambda accuracy: {
