@@ -21,6 +21,9 @@ STEPS = 60
 MARGIN = 1e-3
 """Distance from the boundary of stability at which a step of the homotopy starts, relative to the size of A."""
 
+STALL = 1e-2
+"""Part of the margin by which a step has to move the closed loop, lest the homotopy ends."""
+
 
 @dataclass(frozen=True, eq=False)
 class ReducedCost:
@@ -62,11 +65,16 @@ class ReducedCost:
         """Return the free entries x (p,) of a matrix (n, l)."""
         return self.basis.T @ gain.ravel(order="F")
 
+    def distance(self, x: Matrix) -> float:
+        """Return the distance of the slowest mode of A - L C from the boundary of stability, negative inside."""
+        if not np.isfinite(x).all():
+            return np.inf
+        modes = np.linalg.eigvals(self.A - self.gain(x) @ self.C)
+        return float(np.max(distance_to_stability(modes, self.time)))
+
     def is_stable(self, x: Matrix) -> bool:
         """Tell whether A - L C is asymptotically stable."""
-        if not np.isfinite(x).all():
-            return False
-        return bool(np.all(distance_to_stability(np.linalg.eigvals(self.A - self.gain(x) @ self.C), self.time) < 0))
+        return self.distance(x) < 0
 
     def covariance(self, gain: Matrix) -> Matrix:
         """Return P (n, n) of a stabilising gain."""
@@ -138,18 +146,21 @@ def stabilised(cost: ReducedCost, x: Matrix) -> Matrix:
     """
     n = len(cost.A)
     regular = replace(cost, W=np.eye(n), N=np.zeros_like(cost.N), M=np.eye(n))
+    margin, last = MARGIN * spectral_scale(cost.A, cost.time), np.inf
     for _ in range(STEPS):
-        if cost.is_stable(x) or not np.isfinite(x).all():
+        distance = cost.distance(x)
+        if distance < 0:
             return x
-        x = descend(_relaxed(regular, cost.gain(x)), x, rounds=1).x
-    return x if cost.is_stable(x) else np.full_like(x, np.nan)
+        if not last - distance > STALL * margin:
+            break
+        last = distance
+        x = descend(_relaxed(regular, distance + margin), x, rounds=1).x
+    return np.full_like(x, np.nan)
 
 
-def _relaxed(cost: ReducedCost, gain: Matrix) -> ReducedCost:
-    """Return the cost for A - a I, in discrete time for r A and r C, just stabilised by the gain."""
-    farthest = float(np.max(distance_to_stability(np.linalg.eigvals(cost.A - gain @ cost.C), cost.time)))
-    margin = MARGIN * spectral_scale(cost.A, cost.time)
+def _relaxed(cost: ReducedCost, shift: float) -> ReducedCost:
+    """Return the cost for A - a I, in discrete time for r A and r C, with modes moved inwards by the shift."""
     if cost.time == "continuous":
-        return replace(cost, A=cost.A - (farthest + margin) * np.eye(len(cost.A)))
-    r = 1 / (1 + farthest + margin)
+        return replace(cost, A=cost.A - shift * np.eye(len(cost.A)))
+    r = 1 / (1 + shift)
     return replace(cost, A=r * cost.A, C=r * cost.C)
