@@ -10,7 +10,7 @@ import numpy as np
 from derive.numeric.plant import Plant
 from lmi.certificate import ExactPlant, exact_plant
 from lmi.certificate_arithmetic import TooLargeError
-from lmi.certificate_design import Floor
+from lmi.certificate_design import Floor, proper
 from lmi.certificate_design_infeasible import Unseen, floor_squared, keeps_a_mode
 from lmi.certificate_design_report import DIGITS, above_exp, root_below
 from lmi.certificate_report import at_least
@@ -89,7 +89,8 @@ def _above(plant: ExactPlant, gamma: float) -> Infeasible | None:
         squared = floor_squared(plant, floor)
         if squared is not None and squared > Fraction(max(gamma, 0.0)) ** 2:
             bound = root_below(squared)
-            reason = f"every stabilising gain has an H-infinity norm of at least {at_least(bound, DIGITS)}"
+            enlarged = ", with noise and weight enlarged to be semidefinite" if any(proper(plant)[1]) else ""
+            reason = f"every stabilising gain has an H-infinity norm of at least {at_least(bound, DIGITS)}{enlarged}"
             return Infeasible("gamma", reason, floor, bound)
     return None
 

@@ -18,7 +18,7 @@ from lmi.certificate import ExactPlant
 from lmi.certificate_arithmetic import Exact, TooLargeError
 from lmi.certificate_design import Floor, floor_checks, proper, reduced_noise, verify_design
 from lmi.certificate_design_file import design_from_dict
-from lmi.certificate_design_infeasible import Unseen, keeps_a_mode
+from lmi.certificate_design_infeasible import Unseen, floor_squared, keeps_a_mode
 from lmi.certificate_design_report import above_exp, below_exp, decay_rate, root_below
 from lmi.certificate_file import read_json
 from lmi.certification_design import certify_design
@@ -295,14 +295,18 @@ def test_noise_and_weight_that_are_not_semidefinite_prove_no_norm(certificate):
 
 @pytest.mark.parametrize("time", TIMES)
 def test_noise_semidefinite_but_for_rounding_is_enlarged_and_that_is_said(time, tmp_path):
-    data = data_of(time) | {"W": [[1.0, 1.0], [1.0, 1.0 - 2.0**-53]], "N": [[0.0], [0.0]]}
+    data = data_of(time) | {"W": [[4.0, 4.0], [4.0, 4.0 - 2.0**-51]], "N": [[0.0], [0.0]]}
     certificate = certify_design(as_plant(data), np.array(GAINS[time]), floor=0.1)
     checks, bounds = verify_design(certificate)
     assert bounds is not None, checks
     assert bounds.enlarged == (Fraction(1, 2**50), 0)
     plant, _, _ = proper(certificate.plant)
-    assert plant.W[0, 0] == 1 + Fraction(1, 2**50)
-    assert plant.W[0, 1] == 1
+    assert plant.W[0, 0] == 4 + Fraction(4, 2**50)
+    assert plant.W[0, 1] == 4
+    worse = replace(certificate.plant, W=Exact.of([[4, 4], [4, 4 - Fraction(1, 2**30)]]))
+    assert "J >= 0" in failing(replace(certificate, cost=replace(certificate.cost, plant=worse)))
+    assert floor_squared(worse, certificate.floor) is None
+    assert floor_squared(certificate.plant, certificate.floor) == bounds.floor_squared
     design = {"schema": "lmi-design/1", "plant": data, "objective": {"name": "hinf"}, "gain": GAINS[time]}
     result = certify(design | {"achieved": {}, "certificate": certificate.as_dict()}, tmp_path)
     assert result.exit_code == 0, result.output
@@ -378,6 +382,9 @@ def test_exponentials_are_compared_rigorously():
     assert not below_exp(1 / e + tiny, Fraction(1))
     assert above_exp(1 / e + tiny, Fraction(1))
     assert not above_exp(1 / e - tiny, Fraction(1))
+    beyond = Fraction(1, 10**61)
+    assert not below_exp((1 + beyond) / e, Fraction(1))
+    assert not above_exp((1 - beyond) / e, Fraction(1))
     assert below_exp(Fraction(1), Fraction(0))
     assert not below_exp(1 + tiny, Fraction(0))
     assert not above_exp(Fraction(1), Fraction(0))

@@ -206,6 +206,12 @@ def test_a_decay_that_an_unseen_mode_prevents_is_proved_to_be_so(time, rate):
             certify_infeasible(plant, decay=rate * share)
 
 
+def test_a_norm_out_of_reach_says_when_the_noise_was_enlarged():
+    W = [[1.0, 1.0], [1.0, 1.0 - 2.0**-53]]
+    plant = of("continuous", [[0.5, 1.0], [-0.25, 0.75]], [[1.0, 0.0]], W, 0.5)
+    assert certify_infeasible(plant, gamma=0.1).reason.endswith(", with noise and weight enlarged to be semidefinite")
+
+
 def test_requests_that_fail_together_only_have_no_proof():
     plant = of("continuous", [[0, 1], [0, 0]], [[1, 0]], np.eye(2), 1)
     with pytest.raises(NotCertifiedError, match=r"gamma 100, decay 50: no proof"):
