@@ -358,16 +358,23 @@ def test_even_an_independent_sample_confirms_nothing(monkeypatch):
     assert validate(example_plant()).verdict is Verdict.UNCONFIRMED
 
 
-def test_a_sample_beside_its_interval_is_neither(monkeypatch):
+@pytest.mark.parametrize(
+    ("half_widths", "agrees", "disagrees", "status"),
+    [
+        (0.5, True, False, "sampled"),
+        (1.15, False, False, "sampled: ... standard deviations from riccati, outside its 99.9% interval"),
+        (2.2, False, True, "disagrees: differs from riccati by ... standard deviations"),
+    ],
+)
+def test_a_sample_says_how_far_riccati_is_from_its_interval(half_widths, agrees, disagrees, status, monkeypatch):
     trace = ROUTES[-1].run(example_plant()).sample.trace
-    factor = (trace.value + 1.15 * trace.half_width) / ROUTES[0].run(example_plant()).P.trace()
+    factor = (trace.value + half_widths * trace.half_width) / ROUTES[0].run(example_plant()).P.trace()
     monkeypatch.setattr(validation_module, "ROUTES", (with_covariance(factor), ROUTES[-1]))
     simulation = validate(example_plant()).route("simulation")
-    assert (simulation.agrees, simulation.disagrees) == (False, False)
-    found = re.fullmatch(
-        r"sampled: (.*) standard deviations from riccati, outside its 99.9% interval", simulation.status
-    )
-    assert 3.3 < float(found[1]) < 6
+    assert (simulation.agrees, simulation.disagrees) == (agrees, disagrees)
+    score = re.search(r"\d+\.\d(?= standard)", simulation.status)
+    assert simulation.status == status.replace("...", score[0] if score else "")
+    assert score is None or 3.3 * half_widths - 0.2 < float(score[0]) < 3.3 * half_widths + 3
 
 
 def test_one_wrong_variance_does_not_hide_behind_the_trace(monkeypatch):
