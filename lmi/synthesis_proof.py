@@ -24,6 +24,9 @@ MARGIN = 1e-6
 """The certified bound of a norm exceeds the computed one by this, relative, as room for the certificate's rounding."""
 
 
+NOTHING = 1e-12
+"""The norm that is certified where the computed one is 0: rounding may have left noise out, so that 0 is no proof."""
+
 EXCESS = 1e-4
 """Part of the cost by which it may exceed the least possible, where the least is asked for."""
 
@@ -45,10 +48,8 @@ def certify(plant: Plant, request: Request, found: Judged) -> tuple["DesignCerti
     Returns:
         The certificate or None, and what it fails to prove, empty when it proves all that was asked.
     """
-    bound = found.norm * (1 + MARGIN)
-    gamma = bound if request.gamma is None else min(bound, request.gamma)
     problems = []
-    for norm, floor in _claims(gamma, _floor(plant, request, found)):
+    for norm, floor in _claims(_norms(request, found), _floor(plant, request, found)):
         try:
             certificate = _certified(plant, found, request, norm, floor)
         except (NotCertifiedError, TooLargeError) as error:
@@ -80,11 +81,15 @@ def _floor(plant: Plant, request: Request, found: Judged) -> float | None:
     return None if free is None else free.achieved.hinf.lower * (1 - GAP)
 
 
-def _claims(gamma: float, floor: float | None) -> list[tuple[float | None, float | None]]:
+def _norms(request: Request, found: Judged) -> list[float]:
+    """Return the norms to prove: a little more than the computed one, else the one asked for."""
+    bound = found.norm * (1 + MARGIN) or NOTHING
+    return [bound] if request.gamma is None else [min(bound, request.gamma), request.gamma]
+
+
+def _claims(norms: list[float], floor: float | None) -> list[tuple[float | None, float | None]]:
     """Return pairs of a norm and a floor to prove, the strongest first."""
-    if gamma == 0.0:
-        return [(None, None)]
-    return [*([(gamma, floor)] if floor else []), (gamma, None), (None, None)]
+    return [*([(norms[0], floor)] if floor else []), *((norm, None) for norm in norms), (None, None)]
 
 
 def _certified(
@@ -107,7 +112,8 @@ def hidden_mode(plant: Plant, request: Request) -> Impossible | None:
     mode = hidden - request.decay if plant.is_continuous else hidden * radius_of(plant, request.decay)
     word = "uncontrollable" if request.dual else "unobservable"
     reason = f"decay {request.decay:g} fails: mode {format_mode(mode)} is {word} and stays with every gain"
-    return _decided(plant, reason, decay=request.decay)
+    decided = _decided(plant, reason, decay=request.decay)
+    return decided if decided.proved else None
 
 
 def why_not(plant: Plant, request: Request, nearest: Judged | None) -> Impossible:

@@ -141,10 +141,13 @@ def read_number(name: str, value: Any) -> float:
 
 
 def read_text(name: str, value: Any) -> str:
-    """Return a text."""
+    """Return a text in one line, without characters that steer a terminal or that no file can hold."""
     if not isinstance(value, str):
         raise InputError(f'{name}: expected a text, got {show(value)}; write it in quotes, as "..."')
-    return value
+    text = " ".join(value.split())
+    if not text.isprintable():
+        raise InputError(f"{name}: expected printable characters, got {show(text)}; remove the others")
+    return text
 
 
 def read_names(name: str, value: Any, count: int) -> tuple[str, ...]:
@@ -156,6 +159,8 @@ def read_names(name: str, value: Any, count: int) -> tuple[str, ...]:
     if not isinstance(value, list | tuple):
         raise InputError(f'{name}: expected a list of {count} names, got {show(value)}; write ["...", "..."]')
     names = tuple(read_text(f"{name}[{i}]", entry).strip() for i, entry in enumerate(value, start=1))
+    if not all(names):
+        raise InputError(f"{name}: expected names, got an empty one in {show(list(names))}; name it")
     if len(names) != count:
         raise InputError(f"{name}: expected {count} names, got {len(names)}; give one for each")
     if len(set(names)) != count:
