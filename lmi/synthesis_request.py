@@ -1,6 +1,6 @@
 """What is asked of a gain."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, cast
 
 from derive.errors import InputError
@@ -49,6 +49,11 @@ class Request:
         """Tell whether the decay and gamma are reached."""
         decays = self.decay is None or found.decay >= self.decay
         return decays and (self.gamma is None or found.hinf.upper <= self.gamma)
+
+    def stricter(self, share: float) -> "Request":
+        """Return the request with bounds that are harder to meet by a share."""
+        gamma = None if self.gamma is None else self.gamma * (1 - share)
+        return replace(self, gamma=gamma, decay=None if self.decay is None else self.decay * (1 + share))
 
 
 def _positive(name: str, value: Any) -> float | None:

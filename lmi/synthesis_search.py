@@ -1,6 +1,6 @@
 """The search for a gain: convex programs and Riccati equations propose, what a gain achieves decides."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import chain
 from typing import Any
@@ -28,7 +28,10 @@ LOOSER = (1.1, 1.3, 2.0)
 """Factors on a bound that is asked for besides a decay."""
 
 INSIDE = 1e-6
-"""The norm asked of a gain is below the bound by this, relative, as room for rounding."""
+"""The norm asked of a gain is below the bound by this, relative, as room for rounding; a decay is above."""
+
+HALVINGS = 12
+"""Steps of the search for a gain between two."""
 
 LARGEST = 12
 """States up to which convex programs give the gain; Riccati equations are quicker from there on."""
@@ -61,7 +64,8 @@ def find_gain(plant: Plant, request: Request) -> Judged | None:
     optimal = _judged(plant, optimal_h2_gain(plant))
     if optimal is not None and request.is_met(optimal.achieved):
         return optimal
-    return _cheapest(plant, request) if request.objective == "h2" else _within(plant, request)
+    found = _cheapest(plant, request) if request.objective == "h2" else _within(plant, request)
+    return _towards(plant, request, found, optimal, lambda judged: judged.achieved.cost)
 
 
 def _cheapest(plant: Plant, request: Request) -> Judged | None:
@@ -108,7 +112,9 @@ def smallest_norm(plant: Plant, decay: float | None) -> Judged | None:
     """
     free = _free(plant)
     request = Request("hinf", decay=decay)
-    return free if free is not None and request.is_met(free.achieved) else _decaying(plant, request)
+    if free is not None and request.is_met(free.achieved):
+        return free
+    return _towards(plant, request, _decaying(plant, request), free, lambda judged: judged.norm)
 
 
 def _free(plant: Plant) -> Judged | None:
@@ -140,6 +146,26 @@ def _decaying(plant: Plant, request: Request) -> Judged | None:
             return best
     moved = _central(plant, shifted(plant, request.decay), None)
     return moved if moved is not None and request.is_met(moved.achieved) else None
+
+
+def _towards(
+    plant: Plant, request: Request, found: Judged | None, ideal: Judged | None, value: Callable[[Judged], float]
+) -> Judged | None:
+    """Move a gain that meets a request towards one that is better and does not, as far as the request is met.
+
+    What shares a Lyapunov matrix with an objective meets a request with room to spare.
+    """
+    if found is None or ideal is None or not request.is_met(found.achieved):
+        return found
+    stricter, best, low, high = request.stricter(INSIDE), found, 0.0, 1.0
+    for _ in range(HALVINGS):
+        share = (low + high) / 2
+        judged = _judged(plant, ideal.gain + share * (found.gain - ideal.gain))
+        if judged is None or not stricter.is_met(judged.achieved):
+            low = share
+        else:
+            high, best = share, min(best, judged, key=value)
+    return best
 
 
 def _central(plant: Plant, moved: Plant, best: Judged | None) -> Judged | None:

@@ -192,6 +192,17 @@ def test_a_program_gives_the_decay_asked_for_and_little_more(time, random_plant)
         assert found.hinf.upper <= 3 * optimal.hinf.upper
 
 
+@pytest.mark.parametrize("time", TIMES)
+def test_a_gain_is_moved_towards_the_best_one_as_far_as_its_decay_allows(time, random_plant):
+    plant = random_plant(time, 2, seed=1)
+    optimal = achieved(plant, solve_riccati(plant).gain)
+    asked = 1.5 * optimal.decay
+    program = achieved(plant, Synthesis.of(plant, asked, *COORDINATES[0]).cheapest_gain())
+    found = design(plant, decay=asked)
+    assert asked <= found.achieved.decay <= 1.01 * asked < program.decay
+    assert optimal.cost < found.achieved.cost < program.cost
+
+
 def test_a_decay_that_the_best_gain_has_changes_nothing(random_plant):
     plant = random_plant("continuous", 3, seed=1)
     for objective in ("h2", "hinf"):
