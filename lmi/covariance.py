@@ -42,7 +42,8 @@ class Solution:
         outcome: of the call of the solver that gave it, or of Clarabel's last one when none did.
         P: error covariance (n, n), or None.
         gain: observer gain (n, l), or None.
-        error: what P lacks (n, n), estimated by Newton steps, or None when P belongs to no stabilising gain.
+        error: what P lacks (n, n), estimated by Newton steps, or None when P belongs to no stabilising gain, or lacks
+            more than half of itself.
         residual: of the Riccati equation at P, relative, in the coordinates of the solver.
         tried: the calls of solvers in the coordinates chosen, by solver and by what became of each.
         seconds: in all.
@@ -84,6 +85,16 @@ class _Answer:
     distance: float
     size: float
 
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """By what answers are compared: first whether they solve their program, then the estimated error."""
+        return self.outcome.status is not Status.SOLVED, self.distance
+
+    @property
+    def is_near(self) -> bool:
+        """Whether the estimated error is small enough for the estimate to mean anything."""
+        return self.distance <= ROUGH * max(self.size, 1.0)
+
 
 def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solution:
     """Solve a program for a plant's optimal error covariance, in coordinates that suit it.
@@ -91,8 +102,9 @@ def solve_covariance(plant: Plant, build: Callable[[Plant], Program]) -> Solutio
     The plant is balanced, and a rough covariance from Lyapunov equations gives coordinates in which the optimal one is
     near the identity; where no stabilising gain is found that way, a rough answer of the cheapest program does. There
     the program is solved; if its answer is not yet as good as its form can be, again in the coordinates of that answer
-    and with sturdier settings, then by other solvers (`lmi.solve.FALLBACKS`). The answer with the smallest estimated
-    error is returned. The Riccati equation is solved nowhere; it only judges.
+    and with sturdier settings, then by other solvers (`lmi.solve.FALLBACKS`). Of the answers that solve the program, or
+    else of all, the one with the smallest estimated error is returned. The Riccati equation is solved nowhere; it only
+    judges.
 
     Args:
         plant: V > 0, (A, C) detectable.
@@ -149,7 +161,7 @@ class _Search:
         self.tried.append((solver, outcome.status))
         if solver == cp.CLARABEL:
             self.last = outcome
-        if answer is not None and (self.best is None or answer.distance < self.best.distance):
+        if answer is not None and (self.best is None or answer.rank < self.best.rank):
             self.best = answer
 
     def reached(self, tolerance: float) -> bool:
@@ -169,7 +181,7 @@ class _Search:
         if best is None:
             return Solution(self.last, None, None, None, np.inf, tried, seconds)
         scaling = best.scaling
-        error = None if best.error is None else scaling.covariance(best.error)
+        error = scaling.covariance(best.error) if best.error is not None and best.is_near else None
         P, gain = scaling.covariance(best.P), scaling.gain(best.gain)
         return Solution(best.outcome, P, gain, error, best.residual, tried, seconds)
 

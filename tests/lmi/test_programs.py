@@ -10,7 +10,7 @@ from derive.errors import InputError
 from derive.numeric.filter_form import filter_covariance, filter_gain
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi import residual
+from lmi import covariance, residual
 from lmi.covariance import covariance_error, solve_covariance
 from lmi.programs.filter_form import filter_form, filter_plant
 from lmi.programs.h2 import h2
@@ -345,3 +345,10 @@ def test_coefficients_are_the_map_and_its_adjoint(time, random_plant):
     image = riccati_map(plant, P)
     np.testing.assert_allclose((K @ packed(P)).reshape(6, 6), image, atol=1e-13)
     np.testing.assert_allclose(packed(P) @ (K.T @ Z.ravel()), np.trace(Z @ image), atol=1e-12)
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.1, True), (2.0, False)])
+def test_an_answer_that_lacks_more_than_itself_has_no_error_estimate(share, said, monkeypatch):
+    """Far from a solution Newton steps say nothing about its distance."""
+    monkeypatch.setattr(covariance, "newton_error", lambda plant, P: -share * P)
+    assert (solve_covariance(example_plant(), optimal_covariance).error is not None) is said
