@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from derive.errors import InputError
+from derive.files import write
 from lmi.certificate import Certificate, ExactPlant
 from lmi.certificate_arithmetic import Exact
 
@@ -222,19 +223,12 @@ def written(x: Fraction) -> str:
 
 
 def write_certificate(certificate: Certificate, path: str | os.PathLike[str]) -> None:
-    """Write a certificate to a temporary name, then rename it.
+    """Write a certificate.
 
     Raises:
         InputError: the file cannot be written.
     """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_text(_text(certificate_dict(certificate)), encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from None
+    write(Path(path), _text(certificate_dict(certificate)))
 
 
 def _text(data: Any) -> str:

@@ -63,6 +63,7 @@ def validate(plant: str, form: str, certificate: str | None, output: str | None)
     from lmi.validation import validate as run
 
     try:
+        _check_places(certificate)
         if output is not None:
             _check_page(output)
         with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
@@ -74,6 +75,8 @@ def validate(plant: str, form: str, certificate: str | None, output: str | None)
             from lmi.certificate_file import write_certificate
 
             write_certificate(validation.certificate.certified.certificate, certificate)
+        elif certificate is not None:
+            _say_not_written(certificate, "nothing was certified")
     except InputError as error:
         raise click.ClickException(str(error)) from None
     if form == "json":
@@ -85,6 +88,22 @@ def validate(plant: str, form: str, certificate: str | None, output: str | None)
 
         print_table(validation)
     return validation.verdict.exit_code
+
+
+def _check_places(*places: str | None) -> None:
+    """Refuse places where no file can be, before long work on what goes there."""
+    from pathlib import Path
+
+    from derive.files import check_place
+
+    for place in places:
+        if place is not None:
+            check_place(Path(place))
+
+
+def _say_not_written(place: str, reason: str) -> None:
+    """Say that a file that was asked for is not written; an older one may be there."""
+    click.echo(f"lmi: {place}: not written, as {reason}", err=True)
 
 
 def _check_page(output: str) -> None:
@@ -131,10 +150,13 @@ def design(
     from lmi.synthesis_file import design_text, write_design
 
     try:
+        _check_places(output)
         with Console(stderr=True).status("plant") as status:  # shows nothing unless standard error is a terminal
             found = run(plant, objective, gamma=gamma, decay=decay, dual=dual, progress=status.update)
         if output is not None and found.gain is not None:
             write_design(found, output)
+        elif output is not None:
+            _say_not_written(output, "no gain was found")
     except InputError as error:
         raise click.ClickException(str(error)) from None
     click.echo(design_text(found) if form == "json" else "\n".join(design_lines(found)))
@@ -158,7 +180,11 @@ def certify(file: str | None, plant: str | None, gain: str | None, output: str |
     """
     from derive.errors import InputError
 
-    if (file is None) == (gain is None) or (gain is not None and plant is None) or (file is not None and output):
+    if (
+        (file is None) == (gain is None)
+        or (gain is not None and plant is None)
+        or (file is not None and output is not None)
+    ):
         raise click.UsageError(
             "expected FILE [--plant PLANT] or --plant PLANT --gain L.csv [-o FILE]; try lmi certify -h"
         )
@@ -181,10 +207,14 @@ def _certified_gain(plant: str | None, gain: str | None, output: str | None) -> 
 
     from lmi.certification_command import as_plant, certify_gain, read_gain
 
+    _check_places(output)
     loaded = as_plant(plant or "")
     matrix = read_gain(gain or "", loaded)
     with Console(stderr=True).status("certificate"):  # shows nothing unless standard error is a terminal
-        return certify_gain(loaded, matrix, output)
+        lines, code = certify_gain(loaded, matrix, output)
+    if output is not None and code:
+        _say_not_written(output, "nothing was certified")
+    return lines, code
 
 
 def main() -> NoReturn:

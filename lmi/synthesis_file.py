@@ -1,15 +1,15 @@
 """Designs as JSON: schema lmi-design/1, the gain stored once; `lmi certify` verifies its certificate."""
 
 import json
-import os
 import re
 from math import isfinite
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from derive.errors import InputError
+from derive.files import write
 from lmi.synthesis import Design
 from lmi.synthesis_achieved import Achieved
 
@@ -66,17 +66,10 @@ def design_text(design: Design) -> str:
     return re.sub(r"\[[^][{}]*\]", lambda row: re.sub(r"\s+", " ", row[0]).replace("[ ", "[").replace(" ]", "]"), text)
 
 
-def write_design(design: Design, path: str | os.PathLike[str]) -> None:
-    """Write a design to a temporary name, then rename it.
+def write_design(design: Design, path: str | PathLike[str]) -> None:
+    """Write a design.
 
     Raises:
         InputError: the file cannot be written.
     """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        temporary.write_text(design_text(design) + "\n", encoding="utf-8")
-        temporary.replace(path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise InputError(f"{path}: cannot be written: {error.strerror or error}; choose another place") from None
+    write(Path(path), design_text(design) + "\n")
