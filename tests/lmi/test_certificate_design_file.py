@@ -1,6 +1,8 @@
 """Designs as files: what `lmi certify` prints comes from the matrices, and whatever is malformed is one line."""
 
 import json
+import subprocess
+import sys
 from copy import deepcopy
 from math import exp, log
 
@@ -295,3 +297,16 @@ def test_malformed_designs_are_one_line_and_exit_code_2(edit, word, design, run)
     assert word in result.stderr
     assert "Traceback" not in result.stderr
     assert len(result.stderr) < 600
+
+
+def test_designs_are_verified_on_the_standard_library_alone(made, tmp_path):
+    path = tmp_path / "design.json"
+    path.write_text(json.dumps(made))
+    code = (
+        "import sys; from lmi.certificate_command import certify_file; import lmi.certificate_design_infeasible; "
+        f"assert certify_file({str(path)!r}, None)[1] == 0; "
+        "print(*{name.partition('.')[0] for name in sys.modules} - set(sys.stdlib_module_names))"
+    )
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
+    assert {"derive", "lmi"} <= set(loaded)
+    assert not {"numpy", "scipy", "flint", "cvxpy", "sympy", "casadi"} & set(loaded)
