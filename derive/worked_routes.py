@@ -36,6 +36,12 @@ ROUTES: Mapping[str, str] = {
 SHOWN = 30
 """Most variances whose bounds are listed."""
 
+DOUBTS: Mapping[bool | None, str] = {
+    True: "",
+    False: " The noise matrix is not exactly semidefinite: P is the greatest Riccati solution, and no covariance.",
+    None: " The noise matrix is too large to decide whether it is semidefinite, and P a covariance.",
+}
+
 
 def verdict_of(validation: Mapping[str, Any]) -> str:
     """Return the verdict with its reason."""
@@ -137,7 +143,7 @@ def bounds_section(plant: Plant, validation: Mapping[str, Any], anchor: str) -> 
     left_out = f" The first {SHOWN} of {plant.n} variances are shown." if plant.n > SHOWN else ""
     text = (
         "An exact certificate, decided in integers: no gain that stabilises has less than the lower bounds, and the "
-        f"optimum is at most the upper ones. Decimals are rounded outwards.{left_out}"
+        f"optimum is at most the upper ones. Decimals are rounded outwards.{left_out}{DOUBTS[bounds['is_covariance']]}"
     )
     return [start, Para((text,)), table]
 

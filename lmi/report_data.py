@@ -92,7 +92,8 @@ def _bounds(certificate: CertificateOutcome) -> dict[str, Any] | None:
 
     bounds = certificate.certified.bounds
     variances = [list(ends(interval)) for interval in bounds.variances]
-    return {"trace": list(ends(bounds.trace)), "cost": list(ends(bounds.cost)), "variances": variances}
+    sums = {"trace": list(ends(bounds.trace)), "cost": list(ends(bounds.cost))}
+    return {**sums, "variances": variances, "is_covariance": bounds.is_covariance}
 
 
 def _matrix(values: Any) -> list[list[float]] | None:

@@ -203,6 +203,11 @@ def test_a_verdict_that_is_not_good_is_not_green(track, undrawn):
     for word in ("agree", "disagree", "unconfirmed"):
         assert verdict({**data, "verdict": word, "reason": "1 < 2"}) == f'<b class="{word}">{word}</b> 1 &lt; 2'
     without = {**data, "covariance": None, "filter": None, "bounds": None, "certificate_status": "failed: no <luck>"}
+    for answer, doubt in ((True, ""), (False, "and no covariance"), (None, "too large to decide")):
+        bounds = {**data["bounds"], "is_covariance": answer}
+        text = str(validation_page(track[0].plant, {**data, "bounds": bounds}).blocks)
+        assert doubt in text
+        assert doubt or "covariance." not in text.partition("An exact certificate")[2].partition("Table")[0]
     shown = str(validation_page(track[0].plant, without).blocks)
     assert "There is no certificate: failed: no <luck>" in shown
     assert "The Riccati equation gave none." in shown
