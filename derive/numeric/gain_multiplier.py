@@ -15,6 +15,9 @@ __all__ = ["solve_for_multiplier"]
 GUARD = 1e-300
 """Weight of ln det M(X, Z) in the cost: no number outside of the stabilising gains, and nothing beside the cost."""
 
+ITERATIONS = 30
+"""Iterations after which new coordinates pay."""
+
 
 def solve_for_multiplier(F: Matrix, C: Matrix, W: Matrix, gain: Matrix, time: Time) -> Found:
     """Find the optimal gain K = X^-1 Z, and P as the multiplier of an equation between X and Z.
@@ -45,7 +48,7 @@ def solve_for_multiplier(F: Matrix, C: Matrix, W: Matrix, gain: Matrix, time: Ti
     S = symmetric_basis(len(F))
     nlp, derivatives = program(F, C, W, S, time)
     first = np.concatenate([S.T @ X.ravel(order="F"), (X @ gain).ravel(order="F")])
-    run = minimise(nlp, first, derivatives)
+    run = minimise(nlp, first, {**derivatives, "ipopt.max_iter": ITERATIONS})
     gains = tuple(_gain(x, S, gain) for x in run.points)
     multiplier = (S @ run.multipliers).reshape(F.shape, order="F")
     return Found(_gain(run.x, S, gain), gains, run.iterations, multiplier)

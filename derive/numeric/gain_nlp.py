@@ -8,7 +8,7 @@ import numpy as np
 
 from derive.errors import InputError
 from derive.numeric.gain_frame import Frame
-from derive.numeric.gain_search import Answer, Method, search
+from derive.numeric.gain_search import ROUNDS, Answer, Method, search
 from derive.numeric.modes import Matrix
 from derive.numeric.normal import normal_form, plant_gain
 from derive.numeric.plant import Plant
@@ -38,8 +38,7 @@ class GainResult:
         form: "convex", "reduced" or "full-space".
         stationarity: size of L V - P C' - N, in discrete time of L (C P C' + R) - A P C' - S, over that of its terms,
             in coordinates in which V and P are the identity; it vanishes with the gradient.
-        history: tr P of the gain before the first and after each iteration, infinite for a gain that does not
-            stabilise.
+        history: tr P of the gains on the way, from the start on, infinite for a gain that does not stabilise.
         iterations: of IPOPT, in all rounds.
         multiplier: P (n, n) as the convex form's multiplier, otherwise None.
         seconds: time taken.
@@ -125,11 +124,11 @@ def _method(form: GainForm) -> tuple[Method, int]:
     if form == "convex":
         from derive.numeric.gain_multiplier import solve_for_multiplier
 
-        return solve_for_multiplier, 6
+        return solve_for_multiplier, ROUNDS
     if form == "reduced":
         from derive.numeric.gain_reduced import solve_reduced
 
-        return solve_reduced, 6
+        return solve_reduced, ROUNDS
     if form == "full-space":
         from derive.numeric.gain_full_space import solve_full_space
 

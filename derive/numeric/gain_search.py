@@ -10,9 +10,9 @@ from derive.numeric.lyapunov import error_covariance
 from derive.numeric.modes import Matrix, Time
 from derive.numeric.stabilise import stabilising_gain
 
-__all__ = ["Answer", "Found", "Method", "search"]
+__all__ = ["ROUNDS", "Answer", "Found", "Method", "search"]
 
-ROUNDS = 6
+ROUNDS = 12
 """Restarts in the coordinates of the last answer."""
 
 SETTLED = 1e-13
@@ -78,14 +78,22 @@ def search(frame: Frame, G: Matrix, method: Method, rounds: int = ROUNDS) -> Ans
         if not np.trace(P) > 0:
             break
         sharper = frame.sharpened(P)
-        K = sharper.R @ frame.T @ K
-        frame, P = sharper, sharper.covariance(K)
+        moved = sharper.R @ frame.T @ K
+        covariance = sharper.covariance(moved)
+        if not np.trace(covariance) > 0:
+            break
+        frame, K, P = sharper, moved, covariance
         found = method(*frame.matrices(), K.astype(float), frame.time)
-        better, iterations, multiplier = frame.covariance(found.gain), iterations + found.iterations, found.multiplier
-        history += _costs(frame, G, found.gains[1:])
+        iterations, multiplier = iterations + found.iterations, found.multiplier
+        costs = _costs(frame, G, found.gains[1:])
+        history += costs
+        gain, better = found.gain, frame.covariance(found.gain)
+        if costs and rounds > 1 and not np.trace(better) < np.trace(P):
+            gain = found.gains[1:][int(np.argmin(costs))]
+            better = frame.covariance(gain)
         decrease = 1 - np.trace(better) / np.trace(P)
         if decrease > 0 or rounds == 1:
-            K, P = found.gain, better
+            K, P = gain, better
         if not decrease > SETTLED:
             break
     T, stationarity = frame.T, _stationarity(frame, K, P)
