@@ -32,8 +32,8 @@ NEAR = 1e-6
 what goes wrong."""
 
 VANISHING = 1e-9
-"""A result smaller than this, relative to the natural size of the plant's coordinates, is zero: differences are then
-relative to that natural size."""
+"""A result smaller than this, relative to the natural size of the plant's coordinates, is zero unless its own error is
+far smaller: differences are then relative to that natural size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,8 @@ class Reference:
         if answer.P is None:
             return cls(plant, answer, *sizes, enclosure)
         results = float(np.trace(answer.P)), cost_of(plant, answer.P), _output_excess(plant, answer.P)
-        trace, cost, output = (_size(value, natural) for value, natural in zip(results, sizes, strict=True))
+        errors = answer.error, answer.error, answer.output_error
+        trace, cost, output = map(_size, results, sizes, errors)
         return cls(plant, answer, trace, cost, output, enclosure)
 
     def difference(self, answer: Answer) -> float | None:
@@ -196,8 +197,10 @@ def _output_excess(plant: Plant, P: Matrix) -> float:
     return output_of(plant, P) - (0.0 if plant.is_continuous else float(np.linalg.slogdet(plant.V)[1]))
 
 
-def _size(value: float, natural: float) -> float:
-    return abs(value) if abs(value) > VANISHING * natural else natural or 1.0
+def _size(value: float, natural: float, error: float) -> float:
+    """Return the size of a result, or where that is zero within its error the natural size."""
+    accurate = abs(value) > 0 and error <= TRUSTED * abs(value)
+    return abs(value) if accurate or abs(value) > VANISHING * natural else natural or 1.0
 
 
 def judged(spec: RouteSpec, answer: Answer, seconds: float, reference: Reference) -> Route:

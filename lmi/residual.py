@@ -16,6 +16,9 @@ Matrix = NDArray[np.floating[Any]]
 SLOWEST = 0.95
 """Ratio of successive Newton steps from which on they are no longer taken to converge."""
 
+NEGLIGIBLE = 1e-12
+"""Negative variance, relative to the largest, that is put down to rounding."""
+
 ROUNDING = 1e-10
 """Relative size of a Newton step that may be rounding, so that the ratio to the next means nothing."""
 
@@ -65,8 +68,8 @@ def newton_error(plant: Plant, P: Matrix) -> Matrix | None:
     regulator, ibid. 16(4), 1971.
     """
     first = gain_covariance(plant, optimal_gain(plant, P))
-    if first is None:
-        return None
+    if first is None or np.any(np.diag(first) < -NEGLIGIBLE * (np.linalg.norm(P) + np.linalg.norm(first))):
+        return None  # LAPACK moves eigenvalues that it takes for zero
     second = gain_covariance(plant, optimal_gain(plant, first))
     if second is None:
         return None

@@ -6,7 +6,10 @@ import numpy as np
 
 from derive.numeric.modes import Matrix, Time
 
-__all__ = ["error_covariance", "solve_lyapunov"]
+__all__ = ["error_covariance", "solve_lyapunov", "solves_lyapunov"]
+
+LYAPUNOV_RTOL = 0.1
+"""Relative residual above which a solution is none."""
 
 DOUBLINGS = 64
 """Squarings of F after which |F|^(2^k) has vanished for every spectral radius below 1 - 1e-16."""
@@ -50,6 +53,16 @@ def _doubled(F: Matrix, X: Matrix) -> Matrix:
             break
         F = F @ F
     return (X + X.T) / 2
+
+
+def solves_lyapunov(F: Matrix, X: Matrix, Q: Matrix, time: Time) -> bool:
+    """Tell whether F X + X F' + Q = 0, discrete F X F' - X + Q = 0, holds within a tenth of Q.
+
+    LAPACK moves pairs of eigenvalues whose sum it takes for zero, relative to F; the solution is then another.
+    """
+    FX = F @ X
+    defect = FX + FX.T + Q if time == "continuous" else FX @ F.T - X + Q
+    return bool(np.isfinite(defect).all() and np.linalg.norm(defect) <= LYAPUNOV_RTOL * np.linalg.norm(Q))
 
 
 def error_covariance(A: Matrix, C: Matrix, W: Matrix, V: Matrix, N: Matrix, gain: Matrix, time: Time) -> Matrix:

@@ -4,15 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from derive.numeric.lyapunov import solve_lyapunov
-from derive.numeric.modes import Matrix, Time
+from derive.numeric.lyapunov import solve_lyapunov, solves_lyapunov
+from derive.numeric.modes import Matrix
 from derive.numeric.normal import NormalForm
 from derive.numeric.riccati_iterations import Candidate
 
 __all__ = ["Sensitivity", "sensitivity"]
-
-LYAPUNOV_RTOL = 0.1
-"""Relative residual of a Lyapunov solution above which it says nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +57,7 @@ def sensitivity(form: NormalForm, found: Candidate, correlation: float) -> Sensi
     H, J = (solve_lyapunov(K, S, form.time) for S in (np.eye(n), Y @ Y.T))
     F, C, W = form.uncorrelated()
     h, j, p, f, c, w, cross = map(_norm, (H, J, P, F, C, W, form.N))
-    if not (_solves(K, H, np.eye(n), form.time) and _solves(K, J, Y @ Y.T, form.time)):
+    if not (solves_lyapunov(K, H, np.eye(n), form.time) and solves_lyapunov(K, J, Y @ Y.T, form.time)):
         return _unknown(n)
     moved = h * w + 2 * f * np.sqrt(h * j) + j * c**2
     eps = float(np.finfo(np.longdouble).eps) * (n + 8)
@@ -71,13 +68,6 @@ def sensitivity(form: NormalForm, found: Candidate, correlation: float) -> Sensi
         E = E + rounded * c * (c + cross / a) * J
     seen = _norm(C @ H @ C.T)
     return Sensitivity(moved / p if p else 0.0, E, 4 * h * seen * defect)
-
-
-def _solves(K: Matrix, X: Matrix, S: Matrix, time: Time) -> bool:
-    """Tell whether X is near the solution of K X + X K' + S = 0: LAPACK moves eigenvalues that it takes for zero."""
-    KX = K @ X
-    defect = KX + KX.T + S if time == "continuous" else KX @ K.T - X + S
-    return _norm(defect) <= LYAPUNOV_RTOL * _norm(S) < np.inf
 
 
 def _unknown(n: int) -> Sensitivity:
