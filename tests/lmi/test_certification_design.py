@@ -11,7 +11,7 @@ import lmi.certification_design as module
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
 from lmi.certificate import exact_plant
-from lmi.certificate_design import floor_checks, proper, verify_design
+from lmi.certificate_design import Norm, floor_checks, proper, verify_design
 from lmi.certification import NotCertifiedError, UnstableGainError
 from lmi.certification_design import certify_design
 from lmi.certification_design_floor import certified_floor
@@ -172,8 +172,8 @@ def test_noise_that_leaves_every_slow_mode_alone_has_no_floor():
 def test_what_the_verifier_rejects_is_not_returned(monkeypatch):
     plant, gain = example_plant(), solve_riccati(example_plant()).gain
     certificate = certify_design(plant, gain)
-    worse = module.Norm(certificate.norm.gamma / 2, certificate.norm.P)
-    monkeypatch.setattr(module, "_norm", lambda cost, asked: worse)
+    worse = Norm(certificate.norm.gamma / 2, certificate.norm.P)
+    monkeypatch.setattr(module, "certified_norm", lambda cost, asked: worse)
     with pytest.raises(NotCertifiedError, match="PMP"):
         certify_design(plant, gain)
 
