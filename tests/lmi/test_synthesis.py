@@ -239,6 +239,27 @@ def test_specifications_hold_for_the_matrices_that_satisfy_them(time, random_pla
     assert np.linalg.eigvalsh(covariance - gain_covariance(plant, gain))[0] >= -1e-5 * np.linalg.norm(covariance)
 
 
+@pytest.mark.parametrize("time", TIMES)
+def test_values_do_not_depend_on_units(time, random_plant):
+    plant = random_plant(time, 5, seed=1)
+    gain = solve_riccati(plant).gain
+    rng = np.random.default_rng(1)
+    s, r = 2.0 ** rng.integers(-20, 21, plant.n), 2.0 ** rng.integers(-10, 11, plant.l)
+    scaled = replace(
+        plant,
+        A=s[:, None] * plant.A / s,
+        C=r[:, None] * plant.C / s,
+        W=plant.W * np.outer(s, s),
+        V=plant.V * np.outer(r, r),
+        N=plant.N * np.outer(s, r),
+        M=plant.M / np.outer(s, s),
+    )
+    ours, theirs = achieved(plant, gain), achieved(scaled, s[:, None] * gain / r)
+    assert theirs.cost == pytest.approx(ours.cost, rel=1e-9)
+    assert theirs.hinf.upper == pytest.approx(ours.hinf.upper, rel=1e-9)
+    assert theirs.decay == pytest.approx(ours.decay, rel=1e-6)
+
+
 # ------------------------------------------------------------------------------------------------ the dual problem
 REGULATOR = {"A": [[0.5, 1.0], [2.0, -1.0]], "B": [[0.0], [1.0]], "Q": [[2.0, 0.3], [0.3, 1.0]], "R": 0.5}
 
