@@ -97,8 +97,8 @@ def test_derive_never_imports_lmi_but_for_the_command_line():
     assert [p.name for p in users] == ["cli.py"]
 
 
-def test_lmi_imports_only_numbers_claims_and_errors_but_for_the_page_of_the_command_line():
-    allowed = ("derive.numeric", "derive.claim", "derive.errors", "derive._version")
+def test_lmi_imports_only_numbers_claims_errors_and_files_but_for_the_page_of_the_command_line():
+    allowed = ("derive.numeric", "derive.claim", "derive.errors", "derive.files", "derive._version")
     for path in (ROOT / "lmi").rglob("*.py"):
         page = ("derive.validation_page",) if path.name == "cli.py" else ()
         foreign = [n for n in imports_of(path) if n.startswith("derive") and not n.startswith((*allowed, *page))]
