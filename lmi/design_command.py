@@ -8,10 +8,17 @@ import numpy as np
 from derive.numeric.modes import format_mode
 from lmi.synthesis import Design
 from lmi.synthesis_file import design_text
+from lmi.synthesis_request import Request
 
 __all__ = ["design_lines"]
 
 DIGITS = 10
+
+COSTLY = 10
+"""Times the least cost, from which on a gain of the smallest norm is worth a hint."""
+
+LOOSER = 1.02
+"""Times the smallest norm, which the hint suggests."""
 
 
 def design_lines(design: Design) -> Iterator[str]:
@@ -60,3 +67,11 @@ def _proved(design: Design) -> Iterator[str]:
     _, bounds = verify_design(written.certificate)
     if bounds is not None:
         yield from proved_lines(written, bounds)
+        if design.achieved is not None and bounds.cost.cost.upper > COSTLY * bounds.cost.cost.lower:
+            yield from _hint(design.request, design.achieved.hinf.upper)
+
+
+def _hint(request: Request, norm: float) -> Iterator[str]:
+    """Say how to get a smaller gain where the smallest norm was sought: near it, gains grow without bound."""
+    if request.objective == "hinf" and request.gamma is None:
+        yield f"near the smallest norm gains are large; --gamma {LOOSER * norm:.3g} finds one that costs less"

@@ -79,9 +79,11 @@ class RiccatiSolution:
 
     @property
     def relative_error(self) -> float:
-        """Estimated bound of |P - P*| / |P|, Frobenius norms; 0 when there is no error."""
-        error = float(np.linalg.norm(self.error))
-        return error / float(np.linalg.norm(self.P)) if error else 0.0
+        """Estimated bound of |P - P*| / |P|, Frobenius norms; 0 when there is no error, infinite when P = 0 has one."""
+        error, size = float(np.linalg.norm(self.error)), float(np.linalg.norm(self.P))
+        if not error:
+            return 0.0
+        return error / size if size else np.inf
 
 
 def solve_riccati(plant: Plant) -> RiccatiSolution:
