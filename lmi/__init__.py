@@ -14,8 +14,8 @@ from derive._version import __version__
 
 if TYPE_CHECKING:
     from derive.numeric.plant import Plant
-    from lmi.certification import Certified
-    from lmi.synthesis import Design
+    from lmi.certification.sandwich import Certified
+    from lmi.synthesis.designs import Design
     from lmi.validation import Validation
 
 __all__ = ["__version__", "certify", "design", "validate"]
@@ -32,8 +32,8 @@ def validate(
 
 def certify(plant: "Plant | str | PathLike[str] | Mapping[str, Any]", gain: Any = None) -> "Certified":
     """Prove bounds on a plant's optimal error covariance, and on a gain if one is given; see `lmi.certification`."""
-    from lmi.certification import certified
-    from lmi.certification_command import as_gain, as_plant
+    from lmi.certification.command import as_gain, as_plant
+    from lmi.certification.sandwich import certified
 
     plant = as_plant(plant)
     return certified(plant, None if gain is None else as_gain("gain", gain, plant))
@@ -48,7 +48,7 @@ def design(
     dual: bool = False,
     progress: Callable[[str], None] | None = None,
 ) -> "Design":
-    """Find an observer gain, or one of state feedback, and prove what it achieves; see `lmi.synthesis.design`."""
-    from lmi.synthesis import design as run
+    """Find a gain, of an observer or of state feedback, and prove what it achieves; see `lmi.synthesis.designs`."""
+    from lmi.synthesis.designs import design as run
 
     return run(plant, objective, gamma=gamma, decay=decay, dual=dual, progress=progress)

@@ -72,7 +72,7 @@ def validate(plant: str, form: str, certificate: str | None, output: str | None)
                 status.update("page")
                 _write_page(output, validation)
         if certificate is not None and validation.certificate.certified is not None:
-            from lmi.certificate_file import write_certificate
+            from lmi.certificate.file import write_certificate
 
             write_certificate(validation.certificate.certified.certificate, certificate)
         elif certificate is not None:
@@ -84,7 +84,7 @@ def validate(plant: str, form: str, certificate: str | None, output: str | None)
 
         click.echo(json.dumps(validation.as_dict(), indent=2, allow_nan=False))
     else:
-        from lmi.report import print_table
+        from lmi.report.table import print_table
 
         print_table(validation)
     return validation.verdict.exit_code
@@ -145,9 +145,9 @@ def design(
     from rich.console import Console
 
     from derive.errors import InputError
-    from lmi.design_command import design_lines
-    from lmi.synthesis import design as run
-    from lmi.synthesis_file import design_text, write_design
+    from lmi.synthesis.command import design_lines
+    from lmi.synthesis.designs import design as run
+    from lmi.synthesis.file import design_text, write_design
 
     try:
         _check_places(output)
@@ -197,7 +197,7 @@ def certify(file: str | None, plant: str | None, gain: str | None, output: str |
 
 
 def _certified_file(file: str, plant: str | None) -> tuple[list[str], int]:
-    from lmi.certificate_command import certify_file
+    from lmi.certificate.command import certify_file
 
     return certify_file(file, plant)
 
@@ -205,7 +205,7 @@ def _certified_file(file: str, plant: str | None) -> tuple[list[str], int]:
 def _certified_gain(plant: str | None, gain: str | None, output: str | None) -> tuple[list[str], int]:
     from rich.console import Console
 
-    from lmi.certification_command import as_plant, certify_gain, read_gain
+    from lmi.certification.command import as_plant, certify_gain, read_gain
 
     _check_places(output)
     loaded = as_plant(plant or "")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.numeric.plant import Plant, load_plant, plant_from_mapping
-from lmi.certification_outcome import CertificateOutcome, attempt_certificate
+from lmi.certification.outcome import CertificateOutcome, attempt_certificate
 from lmi.comparison import AGREEMENT, Reference, Route, judged
 from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
 from lmi.routes import ROUTES, Answer, RouteSpec, cost_of, nuclear_norm
@@ -105,7 +105,7 @@ class Validation:
         """Return the table, what is proved, and the verdict, as the command line prints them."""
         from io import StringIO
 
-        from lmi.report import print_table
+        from lmi.report.table import print_table
 
         out = StringIO()
         print_table(self, out)
@@ -113,13 +113,13 @@ class Validation:
 
     def _repr_html_(self) -> str:
         """Return the same for a notebook."""
-        from lmi.report_notebook import as_html
+        from lmi.report.notebook import as_html
 
         return as_html(self)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the validation as plain data, schema lmi-validate/1."""
-        from lmi.report_data import as_dict
+        from lmi.report.data import as_dict
 
         return as_dict(self)
 

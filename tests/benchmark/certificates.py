@@ -10,8 +10,8 @@ import numpy as np
 
 from derive.errors import InputError
 from derive.numeric.plant import Plant, plant_from_mapping
-from lmi.certificate import verify
-from lmi.certification import NotCertifiedError, certified
+from lmi.certificate.sandwich import verify
+from lmi.certification.sandwich import NotCertifiedError, certified
 from tests.benchmark.table import Row
 from tests.derive.numeric.plants import random_plant
 from tests.derive.numeric.test_log_det import chain

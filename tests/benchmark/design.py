@@ -5,8 +5,8 @@ from __future__ import annotations
 import statistics
 import time
 
-from lmi.certificate_design import verify_design
-from lmi.synthesis import Design, Verdict, design
+from lmi.certificate.design import verify_design
+from lmi.synthesis.designs import Design, Verdict, design
 from tests.benchmark.table import Row
 from tests.derive.numeric.plants import random_plant
 

@@ -6,15 +6,15 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-import lmi.certificate_arithmetic as arithmetic
+import lmi.certificate.arithmetic as arithmetic
 from derive.errors import InputError
 from derive.numeric.plant import Plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi.certificate import Certificate, ExactPlant, exact_plant, verify
-from lmi.certificate_arithmetic import Exact, TooLargeError
-from lmi.certificate_report import proved_lines
-from lmi.certificate_stability import proved_unstable, stabilises
-from lmi.certification import certified
+from lmi.certificate.arithmetic import Exact, TooLargeError
+from lmi.certificate.report import proved_lines
+from lmi.certificate.sandwich import Certificate, ExactPlant, exact_plant, verify
+from lmi.certificate.stability import proved_unstable, stabilises
+from lmi.certification.sandwich import certified
 
 TIMES = ("continuous", "discrete")
 TINY = Fraction(1, 2**80)  # far above the margins of a certificate, far below double precision

@@ -6,9 +6,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-import lmi.certificate_arithmetic as arithmetic
-from lmi.certificate_arithmetic import Exact, TooLargeError, is_definite, is_semidefinite, symmetric_block
-from lmi.certificate_stability import characteristic_polynomial, is_hurwitz, moved_to_the_half_plane
+import lmi.certificate.arithmetic as arithmetic
+from lmi.certificate.arithmetic import Exact, TooLargeError, is_definite, is_semidefinite, symmetric_block
+from lmi.certificate.stability import characteristic_polynomial, is_hurwitz, moved_to_the_half_plane
 
 
 def exact(rows):

@@ -11,16 +11,16 @@ import pytest
 from click.testing import CliRunner
 
 import lmi
-import lmi.certificate_arithmetic as arithmetic
-import lmi.certification_command as command_module
-import lmi.certification_outcome as outcome_module
+import lmi.certificate.arithmetic as arithmetic
+import lmi.certification.command as command_module
+import lmi.certification.outcome as outcome_module
 import lmi.validation as validation_module
 from derive.errors import InputError
 from derive.numeric.plant import example_plant
-from lmi.certificate import Interval, verify
-from lmi.certificate_file import certificate_dict, certificate_from_dict, read_certificate, write_certificate
-from lmi.certificate_report import above, at_least, at_most, ends
-from lmi.certification import NotCertifiedError, certified
+from lmi.certificate.file import certificate_dict, certificate_from_dict, read_certificate, write_certificate
+from lmi.certificate.report import above, at_least, at_most, ends
+from lmi.certificate.sandwich import Interval, verify
+from lmi.certification.sandwich import NotCertifiedError, certified
 from lmi.cli import cli
 from lmi.routes import ROUTES
 from lmi.validation import Verdict
@@ -160,7 +160,7 @@ def test_more_states_than_are_taken_are_refused(data):
 
 
 def test_more_digits_than_the_size_allows_are_refused(data, monkeypatch):
-    import lmi.certificate_file as module
+    import lmi.certificate.file as module
 
     certificate_from_dict(json.loads(data))
     monkeypatch.setattr(module, "SIZE", 100)
@@ -169,7 +169,7 @@ def test_more_digits_than_the_size_allows_are_refused(data, monkeypatch):
 
 
 def test_files_that_are_none_are_named(tmp_path, monkeypatch):
-    import lmi.certificate_file as module
+    import lmi.certificate.file as module
 
     for path, word in ((tmp_path, "folder"), (tmp_path / "nothing.json", "found none")):
         result = invoke("certify", path)
@@ -275,7 +275,7 @@ def test_a_gain_that_does_not_stabilise_is_refuted(folder):
 
 
 def test_a_gain_about_which_nothing_is_proved_ends_with_3(folder, monkeypatch):
-    import lmi.certification as module
+    import lmi.certification.sandwich as module
 
     def give_up(plant, gain):
         raise NotCertifiedError("no luck")
@@ -363,7 +363,7 @@ def test_a_validation_without_certificate_is_unconfirmed(folder, monkeypatch):
         raise NotCertifiedError("no luck")
 
     monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], ROUTES[2]))
-    monkeypatch.setattr("lmi.certification.certified", give_up)
+    monkeypatch.setattr("lmi.certification.sandwich.certified", give_up)
     result = invoke("validate", folder / "plant.toml", "--certificate", folder / "v.json")
     assert result.exit_code == 3
     assert "no certificate: not certified: no luck" in result.stdout
@@ -378,7 +378,7 @@ def test_a_certificate_that_contradicts_riccati_is_a_disagreement(folder, monkey
         return certified(type(plant)(**{**vars(plant), "W": plant.W * 1.001}))
 
     monkeypatch.setattr(validation_module, "ROUTES", (ROUTES[0], ROUTES[2]))
-    monkeypatch.setattr("lmi.certification.certified", of_more_noise)
+    monkeypatch.setattr("lmi.certification.sandwich.certified", of_more_noise)
     validation = lmi.validate(folder / "plant.toml")
     assert validation.excluded
     assert validation.verdict is Verdict.DISAGREE

@@ -11,18 +11,18 @@ import pytest
 from click.testing import CliRunner
 from scipy.optimize import minimize
 
-import lmi.certificate_design as module
+import lmi.certificate.design as module
 from derive.errors import InputError
 from derive.numeric.plant import plant_from_mapping
-from lmi.certificate import ExactPlant
-from lmi.certificate_arithmetic import Exact, TooLargeError
-from lmi.certificate_design import Floor, floor_checks, proper, reduced_noise, verify_design
-from lmi.certificate_design_file import design_from_dict
-from lmi.certificate_design_infeasible import Unseen, floor_squared, keeps_a_mode
-from lmi.certificate_design_report import above_exp, below_exp, decay_rate, root_below
-from lmi.certificate_file import read_json
-from lmi.certification_design import certify_design
-from lmi.certification_design_floor import certified_floor
+from lmi.certificate.arithmetic import Exact, TooLargeError
+from lmi.certificate.design import Floor, floor_checks, proper, reduced_noise, verify_design
+from lmi.certificate.design_file import design_from_dict
+from lmi.certificate.design_infeasible import Unseen, floor_squared, keeps_a_mode
+from lmi.certificate.design_report import above_exp, below_exp, decay_rate, root_below
+from lmi.certificate.file import read_json
+from lmi.certificate.sandwich import ExactPlant
+from lmi.certification.design import certify_design
+from lmi.certification.design_floor import certified_floor
 from lmi.cli import cli
 
 TIMES = ("continuous", "discrete")

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-import lmi.certificate_arithmetic as arithmetic
-import lmi.certificate_file as file_module
+import lmi.certificate.arithmetic as arithmetic
+import lmi.certificate.file as file_module
 from derive.numeric.dual import dual_from_mapping
 from derive.numeric.plant import plant_from_mapping
-from lmi.certification_design import certify_design
+from lmi.certification.design import certify_design
 from lmi.cli import cli
 
 PLANTS = {
@@ -303,7 +303,7 @@ def test_designs_are_verified_on_the_standard_library_alone(made, tmp_path):
     path = tmp_path / "design.json"
     path.write_text(json.dumps(made))
     code = (
-        "import sys; from lmi.certificate_command import certify_file; import lmi.certificate_design_infeasible; "
+        "import sys; from lmi.certificate.command import certify_file; import lmi.certificate.design_infeasible; "
         f"assert certify_file({str(path)!r}, None)[1] == 0; "
         "print(*{name.partition('.')[0] for name in sys.modules} - set(sys.stdlib_module_names))"
     )

@@ -11,11 +11,11 @@ import lmi
 from derive.errors import InputError
 from derive.numeric.plant import Plant, example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi.certificate import exact_plant, verify
-from lmi.certificate_arithmetic import Exact
-from lmi.certification import NotCertifiedError, UnstableGainError, certified
-from lmi.certification_boundary import without_boundary
-from lmi.certification_instability import instability
+from lmi.certificate.arithmetic import Exact
+from lmi.certificate.sandwich import exact_plant, verify
+from lmi.certification.boundary import without_boundary
+from lmi.certification.instability import instability
+from lmi.certification.sandwich import NotCertifiedError, UnstableGainError, certified
 from tests.benchmark.certificates import hard_plants
 from tests.derive.numeric.plants import EDGES, STABILISING, STRONG, random_plant
 
@@ -246,7 +246,7 @@ def test_too_many_states_are_refused():
 
 
 def test_what_is_not_proved_is_not_returned(monkeypatch):
-    import lmi.certification as module
+    import lmi.certification.sandwich as module
 
     monkeypatch.setattr(module, "_lower", lambda *_: Exact.identity(1) * Fraction(10**6))
     with pytest.raises(NotCertifiedError, match=r"F\(P_lo\) >= 0"):

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are, solve_discrete_are
 
-import lmi.certification_design as module
+import lmi.certification.design as module
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi.certificate import exact_plant
-from lmi.certificate_design import Norm, floor_checks, proper, verify_design
-from lmi.certification import NotCertifiedError, UnstableGainError
-from lmi.certification_design import certify_design
-from lmi.certification_design_floor import certified_floor
-from lmi.certification_design_infeasible import certify_infeasible
-from lmi.synthesis_achieved import achieved
+from lmi.certificate.design import Norm, floor_checks, proper, verify_design
+from lmi.certificate.sandwich import exact_plant
+from lmi.certification.design import certify_design
+from lmi.certification.design_floor import certified_floor
+from lmi.certification.design_infeasible import certify_infeasible
+from lmi.certification.sandwich import NotCertifiedError, UnstableGainError
+from lmi.synthesis.achieved import achieved
 
 TIMES = ("continuous", "discrete")
 TARGET = 3e-5

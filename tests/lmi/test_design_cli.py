@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 import lmi
 from lmi.cli import cli
-from lmi.synthesis_file import design_text
+from lmi.synthesis.file import design_text
 
 PLANT = """
 time = "continuous"

@@ -17,7 +17,7 @@ from derive.numeric.riccati import solve_riccati
 from lmi.comparison import AGREEMENT
 from lmi.covariance import covariance_error
 from lmi.enclosure import enclose, number_of
-from lmi.report import proved_lines, verdict_line
+from lmi.report.table import proved_lines, verdict_line
 from lmi.routes import ROUTES, Answer
 from lmi.validation import Verdict, validate
 from tests.derive.numeric.plants import EDGES, random_plant

@@ -21,8 +21,8 @@ from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.validation_page import validation_page, verdict, write_page
 from lmi.cli import cli
-from lmi.report import print_table
-from lmi.report_rows import ranges, spread
+from lmi.report.rows import ranges, spread
+from lmi.report.table import print_table
 from lmi.routes import ROUTES
 from lmi.validation import validate
 

@@ -9,25 +9,25 @@ import pytest
 from scipy.linalg import solve_continuous_are, solve_discrete_are
 
 import lmi
-import lmi.certification_design as making
+import lmi.certification.design as making
 from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi.certificate_design import verify_design
-from lmi.certification import NotCertifiedError
+from lmi.certificate.design import verify_design
+from lmi.certification.sandwich import NotCertifiedError
 from lmi.programs.decay import decay
 from lmi.programs.h2 import cost_bound
 from lmi.programs.hinf import hinf
 from lmi.programs.observer import Unknowns
 from lmi.residual import gain_covariance
-from lmi.synthesis import Verdict, design
-from lmi.synthesis_achieved import achieved
-from lmi.synthesis_gain import COORDINATES, Synthesis
-from lmi.synthesis_proof import certify
-from lmi.synthesis_request import Request
-from lmi.synthesis_riccati import central_gain, smallest_level
-from lmi.synthesis_search import Judged, smallest_norm
-from lmi.synthesis_shift import shifted
+from lmi.synthesis.achieved import achieved
+from lmi.synthesis.designs import Verdict, design
+from lmi.synthesis.gain import COORDINATES, Synthesis
+from lmi.synthesis.proof import certify
+from lmi.synthesis.request import Request
+from lmi.synthesis.riccati import central_gain, smallest_level
+from lmi.synthesis.search import Judged, smallest_norm
+from lmi.synthesis.shift import shifted
 
 TIMES = ("continuous", "discrete")
 HIDDEN = {"A": np.diag([1.2, 0.5]), "C": [[1, 0]], "W": np.eye(2), "V": 1.0}

@@ -15,11 +15,11 @@ import lmi.validation as validation_module
 from derive.errors import InputError
 from derive.numeric.plant import example_plant, plant_from_mapping
 from derive.numeric.riccati import solve_riccati
-from lmi.certification_outcome import CertificateOutcome
+from lmi.certification.outcome import CertificateOutcome
 from lmi.comparison import AGREEMENT
 from lmi.covariance import solve_covariance
 from lmi.enclosure import Enclosure
-from lmi.report import verdict_line
+from lmi.report.table import verdict_line
 from lmi.routes import ROUTES, Answer, cost_of, output_rounding
 from lmi.solve import Status
 from lmi.validation import Verdict, validate

@@ -123,7 +123,10 @@ def test_more_runs_narrow_the_interval():
     [
         (STRONG["constant"][0], "mode 1 of A - L C does not decay"),
         (STRONG["oscillator without noise"][0], "mode 1j of A - L C does not decay"),
-        (EDGES["almost on the boundary, stable"], "slowest time constant 1e+09 s (mode -1e-09), 1e+09 times the fastest"),
+        (
+            EDGES["almost on the boundary, stable"],
+            "slowest time constant 1e+09 s (mode -1e-09), 1e+09 times the fastest",
+        ),
         (EDGES["almost on the circle"], "slowest time constant 1e+09 steps (mode 1); up to 300 are simulated"),
     ],
 )

@@ -1,0 +1,1 @@
+"""A validation for readers: as text, for notebooks, and as plain data."""
