@@ -85,6 +85,18 @@ class Enclosure:
         names = ("integral", "unstable_term", "cross_term")
         return {name: None if self.found is None else number_of(getattr(self.found, name)) for name in names}
 
+    @property
+    def condition(self) -> float | None:
+        """Relative change of P for a relative change of A, W, C'V^-1 C, to first order; None when it is not known."""
+        solution = None if self.found is None else self.found.by_solution.solution
+        return None if solution is None or not np.isfinite(solution.condition) else float(solution.condition)
+
+    @property
+    def near_boundary(self) -> tuple[complex, ...]:
+        """Modes of A - L C on the boundary of stability or beside it, as the Riccati equation's pencil has them."""
+        solution = None if self.found is None else self.found.by_solution.solution
+        return () if solution is None else tuple(complex(mode) for mode in solution.near_boundary)
+
     def lacking(self, P: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]] | None:
         """Return what P (n, n) lacks to the truth, each entry as large as it may be, or None when nothing is proved."""
         if self.found is None or self.found.by_solution.P is None:
@@ -128,7 +140,9 @@ class Enclosure:
         """Return the enclosure as plain data."""
         numbers = {"output": self.output, "trace": self.trace, "cost": self.cost, **self.terms}
         data = {name: None if number is None else number.as_dict() for name, number in numbers.items()}
-        return {"status": self.status, "reason": self.reason, **data, "seconds": self.seconds}
+        near = [[mode.real, mode.imag] for mode in self.near_boundary]
+        sense = {"condition": self.condition, "near_boundary": near}
+        return {"status": self.status, "reason": self.reason, **data, **sense, "seconds": self.seconds}
 
 
 def enclose(plant: Plant) -> Enclosure:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from derive.numeric.modes import format_mode
 from lmi.comparison import AGREEMENT, Route
 from lmi.enclosure import Number
 from lmi.validation import Validation, Verdict
@@ -46,6 +47,17 @@ def proved_lines(validation: Validation) -> Iterator[str]:
         yield f"{name} = {covariance}"
     elif proved.reason:
         yield f"{name}: not enclosed: {proved.reason}"
+    yield from _sensitive(validation)
+
+
+def _sensitive(validation: Validation) -> Iterator[str]:
+    """Say how far P follows the plant's numbers, and which modes make it do so."""
+    proved = validation.enclosure
+    if proved.condition:
+        yield f"condition: P changes by up to {proved.condition:.2g} times a relative change of A, W, C'V^-1 C"
+    if proved.near_boundary:
+        modes = dict.fromkeys(map(format_mode, proved.near_boundary))
+        yield f"modes of A - LC on the boundary of stability or beside it: {', '.join(modes)}"
 
 
 def _sum(validation: Validation) -> str:

@@ -199,3 +199,81 @@ def test_the_command_line_alone_loads_no_optimiser():
     code = "import lmi.cli, sys; print([m for m in ('cvxpy', 'scipy', 'numpy', 'flint') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
+
+
+def test_a_norm_that_rounding_hides_is_not_certified():
+    """What is left of the noise after rounding is 0, and so is the computed norm; the true one is about 0.046."""
+    faint = {
+        "time": "continuous",
+        "A": [[-1e-6, 0.0], [0.0, -1e-6]],
+        "C": [[7.0, -4.0]],
+        "W": [[0.16000000000000003, 0.27999999999999997], [0.27999999999999997, 0.48999999999999994]],
+        "V": [[1e12]],
+        "M": [[49.0, -28.0], [-28.0, 16.0]],
+    }
+    found = lmi.design(faint, "hinf", gamma=1e-6)
+    assert found.verdict.value != "certified"
+    assert found.achieved is None or found.achieved.hinf.upper == 0.0
+
+
+@pytest.mark.parametrize("time", ["continuous", "discrete"])
+def test_a_norm_that_is_nothing_is_certified_as_little(time):
+    plant = {"time": time, "A": [[-0.5]], "C": [[1.0]], "W": [[1.0]], "V": [[1.0]], "M": [[0.0]]}
+    found = lmi.design(plant, "hinf", gamma=0.5)
+    assert found.verdict.value == "certified"
+    assert 0 < found.certificate.norm.gamma <= 0.5
+
+
+def test_a_decay_that_a_hidden_mode_has_is_not_said_to_fail():
+    hidden = {"time": "continuous", "A": [[-3.0, 0.0], [0.0, -0.5]], "C": [[1.0, 0.0]], "W": np.eye(2), "V": [[1.0]]}
+    assert lmi.design(hidden, decay=0.4999999999999995).verdict.value == "certified"
+    assert "stays with every gain" not in lmi.design(hidden, decay=0.5).reason
+    assert lmi.design(hidden, decay=0.51).verdict.value == "infeasible"
+
+
+def test_a_name_cannot_look_like_a_verdict(folder):
+    (folder / "plant.toml").write_text('name = "x\\ncertified\\n"' + PLANT)
+    result = invoke("design", folder / "plant.toml", "--objective", "hinf", "--gamma", "0.01")
+    assert result.exit_code == 1
+    assert "certified" not in result.output.splitlines()
+    (folder / "plant.toml").write_text('name = "x\\u001b[2J"' + PLANT)
+    result = invoke("design", folder / "plant.toml")
+    assert (result.exit_code, len(result.output.splitlines())) == (2, 1)
+    assert "name: expected printable characters" in result.output
+
+
+def test_what_is_not_written_is_said(folder):
+    old = folder / "old.json"
+    old.write_text("old")
+    command = [
+        sys.executable,
+        "-m",
+        "lmi",
+        "design",
+        "plant.toml",
+        "--objective",
+        "hinf",
+        "--gamma",
+        "0.01",
+        "-o",
+        "old.json",
+    ]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr == "lmi: old.json: not written, as no gain was found\n"
+    assert old.read_text() == "old"
+
+
+@pytest.mark.parametrize("place", ["", ".", "missing/d.json"])
+def test_a_place_where_no_file_can_be_is_one_line_before_any_work(place, folder, monkeypatch):
+    monkeypatch.chdir(folder)
+    monkeypatch.setattr("lmi.synthesis.designs.find_gain", lambda *_: pytest.fail("work"))
+    result = invoke("design", "plant.toml", "-o", place)
+    assert (result.exit_code, len(result.output.splitlines())) == (2, 1)
+
+
+def test_a_costly_gain_comes_with_a_hint(smallest, folder):
+    _, smallest_norm = smallest
+    assert "near the smallest norm gains are large; --gamma 0.319 finds one that costs less" in smallest_norm.stdout
+    result = invoke("design", folder / "plant.toml", "--objective", "hinf", "--gamma", "0.319")
+    assert "near the smallest norm" not in result.output

@@ -387,3 +387,21 @@ def test_a_spread_is_printed_to_its_second_digit(value, half_width, text):
 )
 def test_numbers_in_a_row_are_drawn_together(numbers, text):
     assert ranges(numbers) == text
+
+
+def test_the_text_says_how_far_the_covariance_follows_the_plant(aircraft):
+    """The condition bounds, to first order, what a relative change of the numbers does to P."""
+    (line,) = [line for line in str(aircraft).splitlines() if line.startswith("condition: ")]
+    condition = float(line.split()[6])
+    plant, P = aircraft.plant, aircraft.routes[0]
+    changed = plant_from_mapping(
+        {"time": plant.time, "A": plant.A * (1 + 1e-6), "C": plant.C, "W": plant.W, "V": plant.V}
+    )
+    moved = abs(validation_module.validate(changed).routes[0].trace / P.trace - 1)
+    assert 0 < moved <= 1.05 * condition * 1e-6
+    assert "boundary" not in str(aircraft)
+
+
+def test_modes_beside_the_boundary_are_named():
+    text = str(validate(plant_from_mapping(STRONG)))
+    assert "modes of A - LC on the boundary of stability or beside it: 0" in text
