@@ -214,7 +214,7 @@ def test_notes_with_a_plant_end_with_its_worked_example(suffix, tmp_path):
     assert run("notes", "observer", "-o", path, "--plant", plant).exit_code == 0
     text = path.read_text(encoding="utf-8")
     assert "Worked example: mass" in text
-    assert "1.618034" in text  # P solves P + 1 - P^2 = 0
+    assert "1.6180339887498948482" in text  # the certified bounds of P, which solves P + 1 - P^2 = 0
     drawings = [p.name for p in sorted((tmp_path / "figures").iterdir())] if suffix == "md" else []
     assert all(f"figures/{name}" in text for name in drawings)
     assert bool(drawings) == (suffix == "md")
