@@ -36,6 +36,9 @@ CERTIFICATE = "lmi-design-certificate/1"
 
 DUAL_MATRICES = ("A", "B", "Q", "R", "S", "M")
 
+WORK = 5 * 10**8
+"""Largest (n + l)^3 times the bits of the longest integer: about a minute for all inequalities together."""
+
 DIGITS = 1200
 """Most characters of a number of the plant."""
 
@@ -113,8 +116,20 @@ def _certificate(data: Any, plant: ExactPlant, gain: Exact) -> DesignCertificate
         None if norm is None else Norm(*_with_number("norm", norm, "gamma", *_norm_keys(plant))),
         None if floor is None else Floor(*_matrices("floor", floor, _floor_keys(plant))),
     )
-    require_size(plant, _all_matrices(certificate))
+    matrices = _all_matrices(certificate)
+    require_size(plant, matrices)
+    _require_time(plant, matrices)
     return certificate
+
+
+def _require_time(plant: ExactPlant, matrices: list[Exact]) -> None:
+    """Refuse what would take minutes to decide: a design has three times the inequalities of a sandwich."""
+    work = (plant.n + plant.l) ** 3 * max(X.bits for X in matrices)
+    if work > WORK:
+        raise InputError(
+            f"certificate: expected (n + l)^3 times the bits of its integers to be at most {WORK}, got {work}; "
+            "round its matrices to fewer digits, or certify the cost alone with --plant and --gain"
+        )
 
 
 def _bound(plant: ExactPlant) -> str:
