@@ -19,8 +19,8 @@ HEAD = """# Benchmarks
 
 Everything on this page was measured, and is written by `python -m tests.benchmark --page docs/benchmarks.md`; run it
 without `--page` for the figures of your machine. Times are wall time unless a row says otherwise, ratios compare what
-ran one after the other in the same process or from the same shell. Unless OMP_NUM_THREADS says otherwise, linear algebra
-has one core, for us and for the peers. A row that misses its target says so.
+ran one after the other in the same process or from the same shell. Unless OMP_NUM_THREADS says otherwise, linear
+algebra has one core, for us and for the peers. A row that misses its target says so.
 
 PICOS, CVXOPT, python-control and slycot take part where they are installed (`pip install -e '.[benchmark]'`). The
 published collections CAREX and DAREX are read from the folder that the environment variable DERIVE_BENCH names, as

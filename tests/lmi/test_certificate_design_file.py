@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 
 import lmi.certificate.arithmetic as arithmetic
+import lmi.certificate.design_file as design_file_module
 import lmi.certificate.file as file_module
 from derive.numeric.dual import dual_from_mapping
 from derive.numeric.plant import plant_from_mapping
@@ -211,6 +212,13 @@ def test_longer_integers_than_are_decided_quickly_are_refused(design, run, monke
     result = run(design)
     assert result.exit_code == 2
     assert "fewer digits" in result.stderr
+
+
+def test_what_would_take_minutes_in_all_is_refused(design, run, monkeypatch):
+    monkeypatch.setattr(design_file_module, "WORK", 1000)
+    result = run(design)
+    assert (result.exit_code, len(result.output.splitlines())) == (2, 1)
+    assert "(n + l)^3 times the bits of its integers to be at most 1000" in result.output
 
 
 def at(design, *path):
