@@ -32,7 +32,8 @@ def validate(
 
 def certify(plant: "Plant | str | PathLike[str] | Mapping[str, Any]", gain: Any = None) -> "Certified":
     """Prove bounds on a plant's optimal error covariance, and on a gain if one is given; see `lmi.certification`."""
-    from lmi.certification.command import as_gain, as_plant
+    from derive.numeric.plant import as_plant
+    from lmi.certification.command import as_gain
     from lmi.certification.sandwich import certified
 
     plant = as_plant(plant)

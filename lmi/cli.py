@@ -205,7 +205,8 @@ def _certified_file(file: str, plant: str | None) -> tuple[list[str], int]:
 def _certified_gain(plant: str | None, gain: str | None, output: str | None) -> tuple[list[str], int]:
     from rich.console import Console
 
-    from lmi.certification.command import as_plant, certify_gain, read_gain
+    from derive.numeric.plant import as_plant
+    from lmi.certification.command import certify_gain, read_gain
 
     _check_places(output)
     loaded = as_plant(plant or "")

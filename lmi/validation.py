@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from derive.numeric.plant import Plant, load_plant, plant_from_mapping
+from derive.numeric.plant import Plant, as_plant
 from lmi.certification.outcome import CertificateOutcome, attempt_certificate
 from lmi.comparison import AGREEMENT, Reference, Route, judged
 from lmi.enclosure import NUMERICAL_ERRORS, Enclosure, enclose
@@ -140,11 +140,11 @@ def validate(
         InputError: the plant cannot be used.
 
     Example:
-        >>> from derive.numeric.plant import example_plant
+        >>> from derive.numeric.plant import Plant, as_plant
         >>> validate(example_plant()).verdict.value
         'agree'
     """
-    plant = _as_plant(plant)
+    plant = as_plant(plant)
     progress = progress or (lambda name: None)
     progress("enclosure")
     enclosure, run = enclose(plant), _Run(plant, progress)
@@ -159,12 +159,6 @@ def validate(
     admitted = max(AGREEMENT * reference.trace_size, answer.error if np.isfinite(answer.error) else 0.0)
     excluded = certificate.excludes(routes[0].trace, admitted) and not answer.boundary_modes
     return Validation(plant, tuple(routes), enclosure, reference.reads_as_boundary, certificate, excluded)
-
-
-def _as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:
-    if isinstance(plant, Plant):
-        return plant
-    return plant_from_mapping(plant) if isinstance(plant, Mapping) else load_plant(plant)
 
 
 def _with_proved_error(plant: Plant, answer: Answer, enclosure: Enclosure) -> Answer:

@@ -13,7 +13,7 @@ from derive.numeric.fields import Fields, closest, positive_semidefinite, read_n
 from derive.numeric.modes import Matrix, Time, format_mode, undetectable_mode
 from derive.numeric.noise import GENERAL_FORM, read_noise
 
-__all__ = ["Plant", "example_plant", "load_plant", "plant_from_mapping"]
+__all__ = ["Plant", "as_plant", "example_plant", "load_plant", "plant_from_mapping"]
 
 SYNONYMS = {"Q": "W", "R": "V", "S": "N"}
 KEYS = (
@@ -82,6 +82,24 @@ class Plant:
     def is_continuous(self) -> bool:
         """Whether time is continuous."""
         return self.time == "continuous"
+
+
+def as_plant(plant: "Plant | str | PathLike[str] | Mapping[str, Any]") -> Plant:
+    """Return a plant, read from a file or a mapping where it is none.
+
+    Raises:
+        InputError: it is something else, or the file or mapping holds no plant.
+    """
+    if isinstance(plant, Plant):
+        return plant
+    if isinstance(plant, Mapping):
+        return plant_from_mapping(plant)
+    if isinstance(plant, str | PathLike):
+        return load_plant(plant)
+    remedy = "give A, C, W, V by name"
+    if hasattr(plant, "A") and hasattr(plant, "C"):
+        remedy = "a system lacks the noise: derive.numeric.systems.plant_from_system(system, W=..., V=...)"
+    raise InputError(f"plant: expected a file, keys with values or a plant, got {type(plant).__name__}; {remedy}")
 
 
 def load_plant(path: str | PathLike[str]) -> Plant:

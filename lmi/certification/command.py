@@ -1,7 +1,6 @@
 """What `lmi certify` does: verify a file, or certify a gain from anywhere; lines to print and an exit code."""
 
 import re
-from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -11,21 +10,14 @@ from numpy.typing import NDArray
 
 from derive.errors import InputError
 from derive.numeric.fields import read_matrix
-from derive.numeric.plant import Plant, load_plant, plant_from_mapping
+from derive.numeric.plant import Plant
 
-__all__ = ["as_gain", "as_plant", "certify_gain", "read_gain"]
+__all__ = ["as_gain", "certify_gain", "read_gain"]
 
 Matrix = NDArray[np.floating[Any]]
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 BYTES = 16_000_000
-
-
-def as_plant(plant: Plant | str | PathLike[str] | Mapping[str, Any]) -> Plant:
-    """Return a plant, read from a file or a mapping where it is none."""
-    if isinstance(plant, Plant):
-        return plant
-    return plant_from_mapping(plant) if isinstance(plant, Mapping) else load_plant(plant)
 
 
 def as_gain(name: str, value: Any, plant: Plant) -> Matrix:

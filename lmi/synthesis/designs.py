@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from derive.errors import InputError
-from derive.numeric.plant import Plant
+from derive.numeric.plant import Plant, as_plant
 from lmi.synthesis.achieved import Achieved
 from lmi.synthesis.proof import Impossible, certify, hidden_mode, why_not
 from lmi.synthesis.request import Request
@@ -140,12 +140,15 @@ def _require_reachable(plant: Plant, request: Request) -> None:
 
 
 def _loaded(plant: Plant | str | PathLike[str] | Mapping[str, Any], dual: bool) -> Plant:
-    from lmi.certification.command import as_plant
-
     if not dual:
         return as_plant(plant)
     from derive.numeric.dual import dual_from_mapping, load_dual
 
-    if isinstance(plant, Plant):
-        raise InputError("plant: expected A, B, Q, R as a file or a mapping for a dual design, got an observer's plant")
-    return dual_from_mapping(plant) if isinstance(plant, Mapping) else load_dual(plant)
+    if isinstance(plant, Mapping):
+        return dual_from_mapping(plant)
+    if isinstance(plant, str | PathLike):
+        return load_dual(plant)
+    raise InputError(
+        f"plant: expected a file or keys with values for a dual design, got {type(plant).__name__}; "
+        "give A, B, Q, R by name"
+    )

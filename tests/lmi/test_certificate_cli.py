@@ -16,7 +16,7 @@ import lmi.certification.command as command_module
 import lmi.certification.outcome as outcome_module
 import lmi.validation as validation_module
 from derive.errors import InputError
-from derive.numeric.plant import example_plant
+from derive.numeric.plant import example_plant, load_plant
 from lmi.certificate.file import certificate_dict, certificate_from_dict, read_certificate, write_certificate
 from lmi.certificate.report import above, at_least, at_most, ends
 from lmi.certificate.sandwich import Interval, verify
@@ -290,7 +290,7 @@ def test_a_gain_about_which_nothing_is_proved_ends_with_3(folder, monkeypatch):
 )
 def test_gains_are_read_as_they_come(folder, text):
     (folder / "L.csv").write_text(text, encoding="utf-8")
-    plant = command_module.as_plant(folder / "plant.toml")
+    plant = load_plant(folder / "plant.toml")
     assert command_module.read_gain(folder / "L.csv", plant).tolist() == [[3.9], [7.1]]
 
 

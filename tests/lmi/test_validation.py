@@ -286,6 +286,21 @@ def test_cost_is_weighted():
     assert cost_of(plant, P) == 0.0 + 2 * 5.0
 
 
+@pytest.mark.parametrize("work", [lmi.validate, lmi.design, lmi.certify, lambda plant: lmi.design(plant, dual=True)])
+@pytest.mark.parametrize("other", [None, 3, np.eye(2)])
+def test_what_is_no_plant_is_refused_in_one_line(work, other):
+    with pytest.raises(InputError, match=r"^plant: expected a file.* got .*; give A, ") as caught:
+        work(other)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_system_without_noise_is_told_where_to_go():
+    from scipy.signal import StateSpace
+
+    with pytest.raises(InputError, match=r"got StateSpaceDiscrete; a system lacks the noise: .*plant_from_system"):
+        lmi.validate(StateSpace([[0.5]], [[1.0]], [[1.0]], [[0.0]], dt=0.1))
+
+
 def test_a_plant_comes_as_plant_mapping_or_path(tmp_path):
     mapping = {"time": "continuous", "A": -1.0, "C": 1.0, "W": 1.0, "V": 1.0}
     path = tmp_path / "plant.toml"
