@@ -374,7 +374,10 @@ REQUESTS = {
     "gamma NaN": ({"objective": "hinf", "gamma": float("nan")}, "gamma: expected a finite number"),
     "gamma a text": ({"objective": "hinf", "gamma": "1"}, "gamma: expected a real number"),
     "decay zero": ({"decay": 0.0}, "decay: expected a positive number, got 0"),
-    "dual of a plant": ({"dual": True}, "plant: expected a file or keys with values for a dual design, got Plant; give A, B, Q, R"),
+    "dual of a plant": (
+        {"dual": True},
+        "plant: expected a file or keys with values for a dual design, got Plant; give A, B, Q, R",
+    ),
 }
 
 
