@@ -54,7 +54,8 @@ def _sensitive(validation: Validation) -> Iterator[str]:
     """Say how far P follows the plant's numbers, and which modes make it do so."""
     proved = validation.enclosure
     if proved.condition:
-        yield f"condition: P changes by up to {proved.condition:.2g} times a relative change of A, W, C'V^-1 C"
+        data = "A, W, C'V^-1 C" if validation.plant.is_continuous else "A, Q, C'R^-1 C"
+        yield f"condition: P changes by up to {proved.condition:.2g} times a relative change of {data}"
     if proved.near_boundary:
         modes = dict.fromkeys(map(format_mode, proved.near_boundary))
         yield f"modes of A - LC on the boundary of stability or beside it: {', '.join(modes)}"

@@ -83,6 +83,7 @@ def test_the_report_says_what_is_proved():
         "tr(CPC'V^-1) = 2.80389428847232845776017144108 proved to 30 digits",
         "  = 2.80389 (integral) + 0 (unstable modes)",
         "tr P = 7.20739784853077421551928464929 proved to 30 digits",
+        "condition: P changes by up to 13 times a relative change of A, W, C'V^-1 C",
     ]
     plant = plant_from_mapping({"time": "discrete", "A": 2, "C": 1, "Q": 1, "R": 1, "M": 2})
     assert list(proved_lines(validate(plant))) == [
