@@ -90,6 +90,7 @@ def test_the_report_says_what_is_proved():
         "ln det(CPC'+R) = 1.65557083067915220441274994831 proved to 30 digits",
         "  = 0.269276 (integral) + 1.38629 (unstable modes)",
         "tr(MP) = 8.47213595499957939281834733746 proved to 30 digits",
+        "condition: P changes by up to 2.8 times a relative change of A, Q, C'R^-1 C",  # 1.789 + 0.276 + 0.724
     ]
     data = {"time": "continuous", "A": 1, "C": 1, "W": 1, "V": 1}
     for N, line in (
