@@ -140,7 +140,7 @@ def validate(
         InputError: the plant cannot be used.
 
     Example:
-        >>> from derive.numeric.plant import Plant, as_plant
+        >>> from derive.numeric.plant import example_plant
         >>> validate(example_plant()).verdict.value
         'agree'
     """
