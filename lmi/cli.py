@@ -157,9 +157,10 @@ def design(
             write_design(found, output)
         elif output is not None:
             _say_not_written(output, "no gain was found")
+        text = design_text(found) if form == "json" else "\n".join(design_lines(found))
     except InputError as error:
         raise click.ClickException(str(error)) from None
-    click.echo(design_text(found) if form == "json" else "\n".join(design_lines(found)))
+    click.echo(text)
     return found.verdict.exit_code
 
 

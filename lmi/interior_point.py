@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from derive.numeric.plant import Plant
 from lmi.central_path import central_point, rough_covariance
-from lmi.residual import optimal_gain
+from lmi.residual import optimal_gain, symmetric_part
 from lmi.scaling import balanced, recentred, scaled_plant
 
 __all__ = ["InteriorPoint", "solve_interior_point"]
@@ -125,7 +125,7 @@ class _Cone:
         if self.continuous:
             half = self.E.T @ Z @ self.U
             return half + half.T
-        return _symmetric(self.U.T @ Z @ self.U - self.E.T @ Z @ self.E)
+        return symmetric_part(self.U.T @ Z @ self.U - self.E.T @ Z @ self.E)
 
     def normal_matrix(self, Z: Matrix, inverse: Matrix) -> Matrix:
         """Return the matrix of P -> F*(Z F(P) S^-1), symmetrised, in packed coordinates."""
@@ -163,14 +163,10 @@ def _packed_products(lefts: Matrix, rights: Matrix) -> Matrix:
     return out
 
 
-def _symmetric(X: Matrix) -> Matrix:
-    return (X + X.T) / 2
-
-
 # ------------------------------------------------------------------------------------------------ the path
 def _follow(cone: _Cone, P: Matrix, Z: Matrix) -> tuple[Matrix, list[float]]:
     """Follow the path to its end; return the best P on the way, and the merit after each step."""
-    S = _symmetric(cone.J + cone.linear(P))
+    S = symmetric_part(cone.J + cone.linear(P))
     best, history = P, list[float]()
     for _ in range(STEPS):
         merit = _merit(cone, P, Z, S)
@@ -204,11 +200,11 @@ class _Step:
 
         self.cone, self.P, self.Z, self.S = cone, P, Z, S
         self.roots = np.linalg.cholesky(S), np.linalg.cholesky(Z)
-        self.inverse = _symmetric(cho_solve((self.roots[0], True), np.eye(len(S)), check_finite=False))
+        self.inverse = symmetric_part(cho_solve((self.roots[0], True), np.eye(len(S)), check_finite=False))
         normal = cone.normal_matrix(Z, self.inverse).T  # symmetric; in the order of LAPACK
         self.factor = cho_factor(normal, lower=True, overwrite_a=True, check_finite=False)
         self.lacking = -np.eye(len(P)) - cone.adjoint(Z)
-        self.slack = _symmetric(cone.J + cone.linear(P) - S)
+        self.slack = symmetric_part(cone.J + cone.linear(P) - S)
 
     def taken(self) -> tuple[Matrix, Matrix, Matrix]:
         """Return P, Z and S after the step."""
@@ -219,21 +215,21 @@ class _Step:
         centring = min(1.0, max(1e-6, reached / mu)) ** 3 if reached > 0 else 1e-6
         if min(primal, dual) < SHORT:
             centring = max(centring, 0.1)
-        correction = _symmetric(dZ @ dS @ self.inverse)
+        correction = symmetric_part(dZ @ dS @ self.inverse)
         dP, dZ, dS = self._direction(centring * mu * self.inverse - self.Z - correction)
         primal, dual = self._lengths(dS, dZ, 0.99)
-        return self.P + primal * dP, _symmetric(self.Z + dual * dZ), _symmetric(self.S + primal * dS)
+        return self.P + primal * dP, symmetric_part(self.Z + dual * dZ), symmetric_part(self.S + primal * dS)
 
     def _direction(self, target: Matrix) -> tuple[Matrix, Matrix, Matrix]:
         """Return dP, dZ, dS with dZ = sym(target - Z dS S^-1), dS = slack + F(dP) - J and F*(dZ) = what is lacking."""
-        wanted = _symmetric(target - self.Z @ self.slack @ self.inverse)
+        wanted = symmetric_part(target - self.Z @ self.slack @ self.inverse)
         dP = self._solve(self.cone.adjoint(wanted) - self.lacking)
         dZ = self._dual(target, dP)
         dP = dP + self._solve(self.cone.adjoint(dZ) - self.lacking)
-        return dP, self._dual(target, dP), _symmetric(self.slack + self.cone.linear(dP))
+        return dP, self._dual(target, dP), symmetric_part(self.slack + self.cone.linear(dP))
 
     def _dual(self, target: Matrix, dP: Matrix) -> Matrix:
-        return _symmetric(target - self.Z @ (self.slack + self.cone.linear(dP)) @ self.inverse)
+        return symmetric_part(target - self.Z @ (self.slack + self.cone.linear(dP)) @ self.inverse)
 
     def _solve(self, rhs: Matrix) -> Matrix:
         """Solve the normal equations for a symmetric right-hand side."""
@@ -257,5 +253,5 @@ def _reach(root: Matrix, D: Matrix) -> float:
     from scipy.linalg import solve_triangular
 
     half = solve_triangular(root, D, lower=True)
-    least = float(np.linalg.eigvalsh(_symmetric(solve_triangular(root, half.T, lower=True)))[0])
+    least = float(np.linalg.eigvalsh(symmetric_part(solve_triangular(root, half.T, lower=True)))[0])
     return np.inf if least >= 0 else -1.0 / least

@@ -36,7 +36,7 @@ CERTIFICATE = "lmi-design-certificate/1"
 
 DUAL_MATRICES = ("A", "B", "Q", "R", "S", "M")
 
-WORK = 5 * 10**8
+WORK = 2 * 10**9
 """Largest (n + l)^3 times the bits of the longest integer: about a minute for all inequalities together."""
 
 DIGITS = 1200

@@ -277,3 +277,10 @@ def test_a_costly_gain_comes_with_a_hint(smallest, folder):
     assert "near the smallest norm gains are large; --gamma 0.319 finds one that costs less" in smallest_norm.stdout
     result = invoke("design", folder / "plant.toml", "--objective", "hinf", "--gamma", "0.319")
     assert "near the smallest norm" not in result.output
+
+
+def test_a_design_too_large_to_be_verified_is_one_line(folder, monkeypatch):
+    monkeypatch.setattr("lmi.certificate.design_file.WORK", 100)
+    result = invoke("design", folder / "plant.toml")
+    assert (result.exit_code, len(result.output.splitlines())) == (2, 1)
+    assert "certificate: expected (n + l)^3 times the bits" in result.output
